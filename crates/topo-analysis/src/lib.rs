@@ -1,0 +1,1 @@
+//! From scenes to discharge times, knot timelines, ensembles and resonances.

@@ -1,0 +1,1 @@
+//! Knot table, braid closures, tight shapes, and knot types from coordinates.

@@ -1,0 +1,1 @@
+//! Physics tests that cross crates live in `tests/`; see `docs/validation.md`.

@@ -1,0 +1,2 @@
+//! The commands of the topo workspace.
+fn main() {}
