@@ -1,6 +1,8 @@
 //! Why a step is refused, and how long the next one should be.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
+
+use crate::check::{InvalidValue, in_range, positive};
 
 /// Why a candidate step was refused; a value, since most refusals are answered by a smaller step.
 #[derive(Clone, Debug, PartialEq, Serialize, thiserror::Error)]
@@ -83,6 +85,306 @@ impl Rejection {
             Self::TooManyStages { .. } => "too-many-stages",
             Self::Domain { .. } => "domain",
             Self::Fatal { .. } => "fatal",
+        }
+    }
+}
+
+/// Chooses step lengths so that the local error stays near a tolerance.
+///
+/// ```math
+/// \Delta t \leftarrow \Delta t\;\mathrm{clamp}\bigl(s\,(\mathrm{tol}/\mathrm{err})^{1/q},\; 0.1,\; g\bigr)
+/// ```
+///
+/// with safety s, growth limit g, and q the power with which the error estimate vanishes. The tolerance is the *target*, so a step
+/// is refused only when its error exceeds twice the tolerance: as the next step aims at the tolerance anyway, refusing errors
+/// barely above it would throw away good work and make the step length jitter. After a refusal by a guard the step is
+/// halved; the step after a refused one may not grow. [`dt_min`](Self::with_limits) and the limit of trial steps end every run.
+///
+/// # Validation
+/// `steps_follow_the_error`, `refusals_shrink_and_are_counted`
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct StepControl {
+    tolerance: f64,
+    dt_min: f64,
+    dt_max: f64,
+    max_growth: f64,
+    safety: f64,
+    max_trials: u64,
+    /// Length proposed for the next step.
+    dt: f64,
+    just_rejected: bool,
+}
+
+/// Largest shrinkage after one refusal for a large error.
+const MAX_SHRINK: f64 = 0.1;
+/// A step may err by this many tolerances.
+const ACCEPTED_TOLERANCES: f64 = 2.0;
+
+impl StepControl {
+    /// Control towards `tolerance` (in the unit of the model's error norm), first step `dt_initial`.
+    ///
+    /// Defaults: steps within 1e-12..=1e6 times the first one, growth at most 2, safety 0.9, ten million trial steps.
+    ///
+    /// # Errors
+    /// [`InvalidValue`] when `tolerance` or `dt_initial` is not a positive finite number.
+    pub fn new(tolerance: f64, dt_initial: f64) -> Result<Self, InvalidValue> {
+        positive("tolerance", tolerance)?;
+        positive("dt_initial", dt_initial)?;
+        Ok(Self {
+            tolerance,
+            dt_min: (dt_initial * 1e-12).max(f64::MIN_POSITIVE),
+            dt_max: (dt_initial * 1e6).min(f64::MAX),
+            max_growth: 2.0,
+            safety: 0.9,
+            max_trials: 10_000_000,
+            dt: dt_initial,
+            just_rejected: false,
+        })
+    }
+
+    /// With steps within `dt_min`..=`dt_max`; a run that would need shorter ones stops.
+    ///
+    /// # Errors
+    /// [`InvalidValue`] when a limit is not a positive finite number or `dt_min > dt_max`.
+    pub fn with_limits(mut self, dt_min: f64, dt_max: f64) -> Result<Self, InvalidValue> {
+        positive("dt_max", dt_max)?;
+        self.dt_min =
+            positive("dt_min", dt_min).and_then(|_| in_range("dt_min", dt_min, 0.0, dt_max))?;
+        self.dt_max = dt_max;
+        self.dt = self.dt.clamp(dt_min, dt_max);
+        Ok(self)
+    }
+
+    /// With at most `max_growth` (1 to 10) between successive steps.
+    ///
+    /// # Errors
+    /// [`InvalidValue`] outside that range.
+    pub fn with_max_growth(mut self, max_growth: f64) -> Result<Self, InvalidValue> {
+        self.max_growth = in_range("max_growth", max_growth, 1.0, 10.0)?;
+        Ok(self)
+    }
+
+    /// With the factor `safety` (0.1 to 1) on every proposed step.
+    ///
+    /// # Errors
+    /// [`InvalidValue`] outside that range.
+    pub fn with_safety(mut self, safety: f64) -> Result<Self, InvalidValue> {
+        self.safety = in_range("safety", safety, 0.1, 1.0)?;
+        Ok(self)
+    }
+
+    /// With at most `max_trials` trial steps, accepted or refused, in a run.
+    pub fn with_max_trials(mut self, max_trials: u64) -> Self {
+        self.max_trials = max_trials;
+        self
+    }
+
+    /// The tolerance.
+    pub fn tolerance(&self) -> f64 {
+        self.tolerance
+    }
+
+    /// Length proposed for the next step.
+    pub fn dt(&self) -> f64 {
+        self.dt
+    }
+
+    /// Shortest step.
+    pub fn dt_min(&self) -> f64 {
+        self.dt_min
+    }
+
+    /// Longest step.
+    pub fn dt_max(&self) -> f64 {
+        self.dt_max
+    }
+
+    /// Limit of trial steps in a run.
+    pub fn max_trials(&self) -> u64 {
+        self.max_trials
+    }
+
+    /// Proposes `dt` for the next step, as after the state changed by other means.
+    ///
+    /// # Errors
+    /// [`InvalidValue`] when `dt` is not a positive finite number.
+    pub fn restart(&mut self, dt: f64) -> Result<(), InvalidValue> {
+        self.dt = positive("dt", dt)?.clamp(self.dt_min, self.dt_max);
+        self.just_rejected = false;
+        Ok(())
+    }
+
+    /// Whether a step with `error` is good enough.
+    ///
+    /// # Errors
+    /// [`Rejection::ErrorTooLarge`] above twice the tolerance, [`Rejection::NotFinite`] for a NaN.
+    pub fn judge(&self, error: f64) -> Result<(), Rejection> {
+        if !error.is_finite() {
+            Err(Rejection::NotFinite {
+                what: "error estimate",
+            })
+        } else if error > ACCEPTED_TOLERANCES * self.tolerance {
+            Err(Rejection::ErrorTooLarge {
+                error,
+                tolerance: self.tolerance,
+            })
+        } else {
+            Ok(())
+        }
+    }
+
+    /// Length that would give an error of one tolerance, as a factor of the present one.
+    fn factor(&self, error: f64, error_order: u32) -> f64 {
+        let ratio = self.tolerance / error.max(f64::MIN_POSITIVE);
+        self.safety * ratio.powf(1.0 / f64::from(error_order.max(1)))
+    }
+
+    /// Takes note of an accepted step of length `dt` and proposes the next one.
+    ///
+    /// A step that was cut short to end at a wanted time does not shorten the proposal.
+    pub fn accept(&mut self, dt: f64, error: f64, error_order: u32) {
+        let growth = if self.just_rejected {
+            1.0
+        } else {
+            self.max_growth
+        };
+        let next = dt * self.factor(error, error_order).clamp(MAX_SHRINK, growth);
+        let cut_short = dt < self.dt && error <= self.tolerance;
+        self.dt = if cut_short { next.max(self.dt) } else { next }.clamp(self.dt_min, self.dt_max);
+        self.just_rejected = false;
+    }
+
+    /// Takes note of a refused step of length `dt` and proposes a shorter one; `None` when that would be below the shortest.
+    pub fn reject(&mut self, dt: f64, why: &Rejection, error_order: u32) -> Option<f64> {
+        let factor = match why {
+            Rejection::ErrorTooLarge { error, .. } => {
+                self.factor(*error, error_order).clamp(MAX_SHRINK, 0.9)
+            }
+            _ => 0.5,
+        };
+        self.just_rejected = true;
+        let shorter = dt * factor;
+        if shorter < self.dt_min {
+            return None;
+        }
+        self.dt = shorter;
+        Some(shorter)
+    }
+}
+
+/// How many steps were refused, by the name of the reason.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct RejectionCounts(std::collections::BTreeMap<String, u64>);
+
+impl RejectionCounts {
+    /// Counts one refusal.
+    pub fn add(&mut self, why: &Rejection) {
+        match self.0.get_mut(why.name()) {
+            Some(count) => *count += 1,
+            None => drop(self.0.insert(why.name().to_owned(), 1)),
+        }
+    }
+
+    /// Refusals with this name.
+    pub fn count(&self, name: &str) -> u64 {
+        self.0.get(name).copied().unwrap_or(0)
+    }
+
+    /// All refusals.
+    pub fn total(&self) -> u64 {
+        self.0.values().sum()
+    }
+
+    /// Names and counts, by name.
+    pub fn iter(&self) -> impl Iterator<Item = (&str, u64)> {
+        self.0.iter().map(|(name, count)| (name.as_str(), *count))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    fn control() -> StepControl {
+        StepControl::new(1e-3, 1.0).unwrap()
+    }
+
+    #[test]
+    fn steps_follow_the_error() {
+        let mut c = control();
+        c.accept(1.0, 1e-3, 2);
+        assert_relative_eq!(c.dt(), 0.9);
+        c.accept(0.9, 1e-3 * 0.81, 2);
+        assert_relative_eq!(c.dt(), 0.9, max_relative = 1e-12);
+        c.accept(0.9, 0.0, 2);
+        assert_relative_eq!(c.dt(), 1.8);
+        // The higher the order of the estimate, the less a given error shortens the step.
+        let (mut second, mut third) = (control(), control());
+        second.accept(1.0, 1.9e-3, 2);
+        third.accept(1.0, 1.9e-3, 3);
+        assert!(second.dt() < third.dt() && third.dt() < 1.0);
+        let mut limited = control().with_limits(0.1, 1.2).unwrap();
+        limited.accept(1.0, 1e-9, 2);
+        assert_eq!(limited.dt(), 1.2);
+        limited.accept(0.01, 1e-9, 2);
+        assert_eq!(limited.dt(), 1.2, "a step cut short keeps the proposal");
+    }
+
+    #[test]
+    fn refusals_shrink_and_are_counted() {
+        let mut c = control();
+        assert_eq!(c.judge(2e-3), Ok(()));
+        let large = c.judge(1.0).unwrap_err();
+        assert_eq!(large.name(), "error-too-large");
+        assert_eq!(c.reject(1.0, &large, 2), Some(0.1));
+        c.accept(0.1, 1e-12, 2);
+        assert_eq!(c.dt(), 0.1, "no growth right after a refusal");
+        let guard = Rejection::Crossing { edges: (3, 9) };
+        assert_eq!(c.reject(0.1, &guard, 2), Some(0.05));
+        let mut counts = RejectionCounts::default();
+        counts.add(&guard);
+        counts.add(&guard);
+        counts.add(&large);
+        assert_eq!(
+            (
+                counts.count("crossing"),
+                counts.total(),
+                counts.iter().count()
+            ),
+            (2, 3, 2)
+        );
+        let mut short = control().with_limits(0.9, 2.0).unwrap();
+        assert_eq!(short.reject(1.0, &guard, 2), None);
+        assert_eq!(c.judge(f64::NAN).unwrap_err().name(), "not-finite");
+    }
+
+    #[test]
+    fn broken_settings_are_refused() {
+        for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            assert!(StepControl::new(bad, 1.0).is_err() && StepControl::new(1.0, bad).is_err());
+            assert!(
+                control().with_limits(bad, 1.0).is_err()
+                    && control().with_limits(1e-3, bad).is_err()
+            );
+            assert!(control().with_max_growth(bad).is_err() && control().with_safety(bad).is_err());
+            assert!(control().restart(bad).is_err());
+        }
+        assert!(control().with_limits(2.0, 1.0).is_err());
+    }
+
+    proptest::proptest! {
+        #[test]
+        fn proposals_stay_within_limits(errors in proptest::collection::vec(proptest::num::f64::ANY, 1..50)) {
+            let mut c = control().with_limits(1e-6, 1e3).unwrap();
+            for error in errors {
+                let dt = c.dt();
+                match c.judge(error) {
+                    Ok(()) => c.accept(dt, error, 2),
+                    Err(why) => drop(c.reject(dt, &why, 2)),
+                }
+                proptest::prop_assert!((1e-6..=1e3).contains(&c.dt()));
+            }
         }
     }
 }

@@ -1,5 +1,11 @@
 //! What integrators ask of a model, and what they give back.
 
+mod ros2w;
+#[cfg(test)]
+pub(crate) mod testing;
+
+pub use ros2w::{GAMMA_L_STABLE_LARGE, GAMMA_L_STABLE_SMALL, Ros2w};
+
 use serde::{Deserialize, Serialize};
 
 use crate::control::Rejection;

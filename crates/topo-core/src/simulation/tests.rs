@@ -1,0 +1,233 @@
+//! Tests of the loop on a decay whose every number is known.
+
+use super::*;
+use crate::integrate::{LinearlyImplicit, Ros2w};
+use crate::observe::Schedule;
+
+/// u' = -u with energy u^2/2, and ways to misbehave.
+#[derive(Clone, Default)]
+struct Decay {
+    w: f64,
+    ledger: Option<Ledger>,
+    forbidden_below: f64,
+    fatal_after: Option<f64>,
+    longest_allowed: Option<f64>,
+    moved: f64,
+}
+
+impl Model for Decay {
+    type State = Vec<f64>;
+    fn n_dof(&self) -> usize {
+        1
+    }
+    fn rate(&mut self, u: &Vec<f64>, rate: &mut [f64]) -> Result<(), Rejection> {
+        rate[0] = -u[0];
+        Ok(())
+    }
+    fn advance(&self, from: &Vec<f64>, step: &[f64], to: &mut Vec<f64>) -> Result<(), Rejection> {
+        to[0] = from[0] + step[0];
+        Ok(())
+    }
+    fn check(&mut self, _: &Vec<f64>, to: &Vec<f64>, _: &[f64], dt: f64) -> Result<(), Rejection> {
+        if to[0] < self.forbidden_below {
+            return Err(Rejection::Domain { what: "below" });
+        }
+        if self.longest_allowed.is_some_and(|longest| dt > longest) {
+            return Err(Rejection::Displacement {
+                vertex: 0,
+                moved: dt,
+                limit: 0.0,
+            });
+        }
+        match self.fatal_after {
+            Some(limit) if to[0] < limit => Err(Rejection::Fatal { what: "planted" }),
+            _ => Ok(()),
+        }
+    }
+    fn accepted(&mut self, from: &Vec<f64>, to: &Vec<f64>, step: &[f64], dt: f64) {
+        self.moved += step[0];
+        if let Some(ledger) = &mut self.ledger {
+            ledger.dissipate(0, step[0] * step[0] / dt);
+            ledger.set_stored(&[0.5 * to[0] * to[0]]);
+        }
+        assert_eq!(from[0] + step[0], to[0]);
+    }
+    fn ledger(&self) -> Option<&Ledger> {
+        self.ledger.as_ref()
+    }
+}
+
+impl LinearlyImplicit for Decay {
+    fn prepare(&mut self, _: &Vec<f64>, g_dt: f64) -> Result<(), Rejection> {
+        self.w = 1.0 + g_dt;
+        Ok(())
+    }
+    fn solve(&mut self, rhs: &mut [f64]) -> Result<(), Rejection> {
+        rhs[0] /= self.w;
+        Ok(())
+    }
+}
+
+fn simulation(model: Decay, tolerance: f64) -> Simulation<Decay, Ros2w> {
+    let control = StepControl::new(tolerance, 1e-2).unwrap();
+    Simulation::new(model, vec![1.0], Ros2w::default(), control)
+}
+
+fn never(_: &Sample<'_, Vec<f64>>) -> Option<String> {
+    None
+}
+
+#[test]
+fn decays_as_it_should() {
+    let error = |tolerance: f64| {
+        let mut ledger = Ledger::new(&["energy"], &["drag"]);
+        ledger.set_stored(&[0.5]);
+        let mut run = simulation(
+            Decay {
+                ledger: Some(ledger),
+                ..Decay::default()
+            },
+            tolerance,
+        );
+        assert_eq!(run.run(3.0, &mut [], &mut never), StopReason::ReachedTime);
+        assert_eq!(run.time(), 3.0);
+        assert!((run.model().moved - (run.state()[0] - 1.0)).abs() < 1e-12);
+        let ledger = run.sample().ledger;
+        assert!(ledger.stored_total() < 2e-3 && ledger.relative_residual() < 30.0 * tolerance);
+        (run.state()[0] - (-3.0_f64).exp()).abs()
+    };
+    let (coarse, fine) = (error(1e-4), error(1e-6));
+    assert!(
+        coarse < 5e-3 && fine < 5e-5 && fine < 0.1 * coarse,
+        "{coarse:e} {fine:e}"
+    );
+}
+
+#[test]
+fn every_way_to_stop() {
+    let mut run = simulation(Decay::default(), 1e-3);
+    let reason = run.run(1e9, &mut [], &mut |s| {
+        (s.state[0] < 0.5).then(|| "half".to_owned())
+    });
+    assert_eq!(reason, StopReason::Condition("half".to_owned()));
+    assert!(run.state()[0] < 0.5 && reason.is_success());
+
+    let mut run = simulation(
+        Decay {
+            forbidden_below: 0.7,
+            ..Decay::default()
+        },
+        1e-3,
+    );
+    let reason = run.run(10.0, &mut [], &mut never);
+    let StopReason::StepTooSmall { last, .. } = &reason else {
+        panic!("{reason}")
+    };
+    assert_eq!(*last, Rejection::Domain { what: "below" });
+    assert!(run.state()[0] >= 0.7 && run.rejections().count("domain") > 10);
+
+    let mut run = simulation(Decay::default(), 1e-3);
+    *run.control_mut() = run.control().clone().with_max_trials(7);
+    assert_eq!(
+        run.run(1e9, &mut [], &mut never),
+        StopReason::StepLimit { n: 7 }
+    );
+    assert_eq!(run.n_steps() + run.rejections().total(), 7);
+
+    let interrupt = Interrupt::new();
+    let mut run = simulation(Decay::default(), 1e-3).with_interrupt(interrupt.clone());
+    let mut ask = |s: &Sample<'_, Vec<f64>>| {
+        if s.step == 3 {
+            interrupt.request();
+        }
+        None
+    };
+    assert_eq!(run.run(1e9, &mut [], &mut ask), StopReason::Interrupted);
+    assert_eq!(run.n_steps(), 3);
+
+    let mut run = simulation(
+        Decay {
+            fatal_after: Some(0.9),
+            ..Decay::default()
+        },
+        1e-3,
+    );
+    assert_eq!(
+        run.run(1e9, &mut [], &mut never),
+        StopReason::Failed {
+            why: Rejection::Fatal { what: "planted" }
+        }
+    );
+
+    let mut run = simulation(Decay::default(), 1e-3);
+    run.modify(|_, state| state[0] = f64::NAN);
+    assert_eq!(run.run(1.0, &mut [], &mut never).name(), "step-too-small");
+    assert_eq!(
+        simulation(Decay::default(), 1e-3).run(f64::NAN, &mut [], &mut never),
+        StopReason::ReachedTime
+    );
+    let report = serde_json::to_string(&StopReason::StepLimit { n: 7 }).unwrap();
+    assert_eq!(report, r#"{"step-limit":{"n":7}}"#);
+}
+
+#[test]
+fn a_time_too_large_to_grow_ends_the_run() {
+    let mut run = simulation(Decay::default(), 1e-3).resumed_at(1e30, 5);
+    assert_eq!(run.run(2e30, &mut [], &mut never).name(), "step-too-small");
+}
+
+#[test]
+fn observers_see_what_they_asked_for() {
+    let mut all = Vec::new();
+    let mut few: Vec<(f64, u64)> = Vec::new();
+    let mut see_all = |s: &Sample<'_, Vec<f64>>| all.push(s.time);
+    let mut see_few = |s: &Sample<'_, Vec<f64>>| few.push((s.time, s.step));
+    let mut run = simulation(Decay::default(), 1e-4);
+    let mut observers = [
+        Scheduled::new(Schedule::always(), &mut see_all),
+        Scheduled::new(Schedule::every(0.5).unwrap().exact(), &mut see_few),
+    ];
+    run.run(2.2, &mut observers, &mut never);
+    assert_eq!(all.len() as u64, run.n_steps() + 1);
+    assert!(all.windows(2).all(|t| t[0] < t[1]));
+    assert_eq!(
+        few.iter().map(|f| f.0).collect::<Vec<_>>(),
+        [0.0, 0.5, 1.0, 1.5, 2.0]
+    );
+    assert_eq!(all.last(), Some(&2.2));
+}
+
+#[test]
+fn looking_does_not_change_the_run() {
+    let mut watched = simulation(Decay::default(), 1e-4);
+    let mut look = |_: &Sample<'_, Vec<f64>>| {};
+    let mut other = |_: &Sample<'_, Vec<f64>>| {};
+    let mut observers = [
+        Scheduled::new(Schedule::log_spaced(1e-3, 10.0).unwrap(), &mut look),
+        Scheduled::new(Schedule::every_steps(2), &mut other),
+    ];
+    watched.run(2.0, &mut observers, &mut never);
+    let mut alone = simulation(Decay::default(), 1e-4);
+    alone.run(2.0, &mut [], &mut never);
+    assert_eq!(
+        (watched.state(), watched.n_steps()),
+        (alone.state(), alone.n_steps())
+    );
+}
+
+#[test]
+fn guards_halve_the_step() {
+    let mut run = simulation(
+        Decay {
+            longest_allowed: Some(3e-3),
+            ..Decay::default()
+        },
+        1e-3,
+    );
+    run.run(0.1, &mut [], &mut never);
+    assert!(run.rejections().count("displacement") >= 2 && run.n_steps() >= 33);
+    assert_eq!(
+        run.counters().n_trials,
+        run.n_steps() + run.rejections().total()
+    );
+}
