@@ -1,9 +1,13 @@
 //! What integrators ask of a model, and what they give back.
 
+mod fire;
+mod rkc2;
 mod ros2w;
 #[cfg(test)]
 pub(crate) mod testing;
 
+pub use fire::{Fire, Relaxation, RelaxationEnd, Relaxed};
+pub use rkc2::Rkc2;
 pub use ros2w::{GAMMA_L_STABLE_LARGE, GAMMA_L_STABLE_SMALL, Ros2w};
 
 use serde::{Deserialize, Serialize};

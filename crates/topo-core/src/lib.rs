@@ -1,28 +1,47 @@
 //! Shared ground of the topological batteries: units, curve geometry, integrators, step control, ledger, observers, checkpoints.
+//!
+//! Reading order: `curve` (what is deformed), `integrate` (what a model offers and how it is advanced), `control` and
+//! `simulation` (the loop that ends for certain), `ledger` and `observe` (what is known of a run), `discharge` (what a battery
+//! yields), `sparse` (the one matrix), `file`, `checkpoint` and `snapshot` (what stays on disk), `check` (validators, and the
+//! finite differences that every energy is tested with).
+//!
+//! Everything here is free of units, but for `units`: a rod's radius, bending modulus and viscosity are 1, and SI values enter and
+//! leave through [`RodUnits`].
 
 mod check;
+mod checkpoint;
 mod control;
 mod curve;
 mod discharge;
 mod error;
+mod file;
 mod integrate;
 mod ledger;
 mod observe;
 mod simulation;
+mod snapshot;
 mod sparse;
+mod units;
 
 pub use check::{
     InvalidValue, finite, finite_difference_gradient, in_range, non_negative, positive,
 };
+pub use checkpoint::{load_checkpoint, save_checkpoint};
 pub use control::{Rejection, RejectionCounts, StepControl};
 pub use curve::{Polyline, average_crossing_number, writhe};
 pub use discharge::{DischargeCurve, DischargeError};
 pub use error::{CurveError, SparseError};
+pub use file::{FileError, write_atomic, write_atomic_bytes};
 pub use integrate::{
-    Counters, GAMMA_L_STABLE_LARGE, GAMMA_L_STABLE_SMALL, LinearlyImplicit, Model, Ros2w,
-    SpectralBound, Stepper, Trial, max_norm,
+    Counters, Fire, GAMMA_L_STABLE_LARGE, GAMMA_L_STABLE_SMALL, LinearlyImplicit, Model,
+    Relaxation, RelaxationEnd, Relaxed, Rkc2, Ros2w, SpectralBound, Stepper, Trial, max_norm,
 };
 pub use ledger::{CompensatedSum, EnergyEvent, Ledger};
 pub use observe::{Observer, Sample, Schedule, Scheduled};
 pub use simulation::{Interrupt, Simulation, StopCondition, StopReason};
+pub use snapshot::Snapshot;
 pub use sparse::SparseCholesky;
+pub use units::{
+    RodMaterial, RodUnits, SILICONE, bending_time, energy_over_reference, reference_time,
+    twist_time,
+};
