@@ -6,7 +6,7 @@ mod ros2w;
 #[cfg(test)]
 pub(crate) mod testing;
 
-pub use fire::{Fire, Relaxation, RelaxationEnd, Relaxed};
+pub use fire::{Fire, ForceFn, Relaxation, RelaxationEnd, Relaxed};
 pub use rkc2::Rkc2;
 pub use ros2w::{GAMMA_L_STABLE_LARGE, GAMMA_L_STABLE_SMALL, Ros2w};
 

@@ -33,7 +33,7 @@ pub use discharge::{DischargeCurve, DischargeError};
 pub use error::{CurveError, SparseError};
 pub use file::{FileError, write_atomic, write_atomic_bytes};
 pub use integrate::{
-    Counters, Fire, GAMMA_L_STABLE_LARGE, GAMMA_L_STABLE_SMALL, LinearlyImplicit, Model,
+    Counters, Fire, ForceFn, GAMMA_L_STABLE_LARGE, GAMMA_L_STABLE_SMALL, LinearlyImplicit, Model,
     Relaxation, RelaxationEnd, Relaxed, Rkc2, Ros2w, SpectralBound, Stepper, Trial, max_norm,
 };
 pub use ledger::{CompensatedSum, EnergyEvent, Ledger};

@@ -27,6 +27,9 @@ pub struct Relaxed<'a> {
     pub largest_force: f64,
 }
 
+/// Writes the force at the given positions.
+pub type ForceFn<'a> = dyn FnMut(&[f64], &mut [f64]) -> Result<(), Rejection> + 'a;
+
 /// Why a relaxation ended.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
@@ -111,7 +114,7 @@ impl Fire {
     pub fn relax(
         &self,
         positions: &mut [f64],
-        force: &mut dyn FnMut(&[f64], &mut [f64]) -> Result<(), Rejection>,
+        force: &mut ForceFn<'_>,
         converged: &mut dyn FnMut(&Relaxed<'_>) -> bool,
     ) -> Relaxation {
         let n = positions.len();
