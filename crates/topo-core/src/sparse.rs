@@ -10,7 +10,16 @@ use faer::sparse::linalg::{LltError, SupernodalThreshold, amd};
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMat};
 use faer::{Conj, MatMut, Par, Side};
 
+use self::pattern::{checked_permutation, triangle};
+use self::substitute::{Panel, substitute};
 use crate::error::SparseError;
+
+mod pattern;
+mod substitute;
+
+/// Where supernodes win, measured on contact graphs of knots with one and three unknowns a vertex: faer's own choice, made for
+/// large matrices, comes too late for these.
+const DENSE_ENOUGH: SupernodalThreshold = SupernodalThreshold(0.4);
 
 /// Factor L L^T of a symmetric positive definite matrix whose pattern never changes.
 ///
@@ -38,6 +47,9 @@ pub struct SparseCholesky {
     inverse: Vec<u32>,
     /// Permuted right-hand sides.
     work: Vec<f64>,
+    panels: Vec<Panel>,
+    /// What a panel shares with the rows below it.
+    outer: Vec<f64>,
     memory: MemBuffer,
     solvable_n_rhs: usize,
     /// Of each permuted row: where the matrix keeps its diagonal entry, and the factor its pivot.
@@ -66,7 +78,7 @@ impl SparseCholesky {
         pattern: &[(u32, u32)],
         ordering: Option<&[usize]>,
     ) -> Result<Self, SparseError> {
-        Self::with_threshold(n, pattern, ordering, SupernodalThreshold::AUTO)
+        Self::with_threshold(n, pattern, ordering, DENSE_ENOUGH)
     }
 
     fn with_threshold(
@@ -91,7 +103,7 @@ impl SparseCholesky {
         let memory_error = || SparseError::OutOfMemory { n };
         let forward = match ordering {
             Some(order) => checked_permutation(n, order)?,
-            None => minimum_degree(n, &triangle(n, pattern.iter().copied(), true))
+            None => minimum_degree(n, &compressed(n, pattern.iter().copied(), true))
                 .ok_or_else(memory_error)?,
         };
         let mut inverse = vec![0_u32; n];
@@ -103,7 +115,7 @@ impl SparseCholesky {
                 .iter()
                 .map(|(i, j)| (inverse[*i as usize], inverse[*j as usize]))
         };
-        let upper_pattern = triangle(n, permuted(), true);
+        let upper_pattern = compressed(n, permuted(), true);
         let params = CholeskySymbolicParams {
             supernodal_flop_ratio_threshold: threshold,
             ..Default::default()
@@ -119,16 +131,19 @@ impl SparseCholesky {
         let pattern = if upper {
             upper_pattern
         } else {
-            triangle(n, permuted(), false)
+            compressed(n, permuted(), false)
         };
+        let panels = panels(symbolic.raw());
         let mut cholesky = Self {
             values: vec![0.0; pattern.row_idx().len()],
             factor_values: vec![0.0; symbolic.len_val()],
             work: Vec::new(),
+            outer: vec![0.0; n],
             memory: MemBuffer::new(StackReq::empty()),
             solvable_n_rhs: 0,
             diagonal_slots: (0..n).map(|k| diagonal_slot(&pattern, upper, k)).collect(),
-            pivot_slots: pivot_slots(symbolic.raw()),
+            pivot_slots: pivot_slots(symbolic.raw(), &panels),
+            panels,
             factored: false,
             n_factorisations: 0,
             symbolic,
@@ -293,14 +308,23 @@ impl SparseCholesky {
                 *x = given[*old as usize];
             }
         }
-        let matrix = MatMut::from_column_major_slice_mut(work, n, n_rhs);
-        let stack = MemStack::new(&mut self.memory);
-        LltRef::new(&self.symbolic, &self.factor_values).solve_in_place_with_conj(
-            Conj::No,
-            matrix,
-            Par::Seq,
-            stack,
-        );
+        match self.symbolic.raw() {
+            SymbolicCholeskyRaw::Simplicial(_) => {
+                let matrix = MatMut::from_column_major_slice_mut(work, n, n_rhs);
+                let stack = MemStack::new(&mut self.memory);
+                LltRef::new(&self.symbolic, &self.factor_values).solve_in_place_with_conj(
+                    Conj::No,
+                    matrix,
+                    Par::Seq,
+                    stack,
+                );
+            }
+            SymbolicCholeskyRaw::Supernodal(_) => {
+                for x in work.chunks_exact_mut(n) {
+                    substitute(&self.panels, &self.factor_values, x, &mut self.outer);
+                }
+            }
+        }
         for (permuted, solved) in work.chunks_exact(n).zip(rhs.chunks_exact_mut(n)) {
             for (x, new) in solved.iter_mut().zip(&self.inverse) {
                 *x = permuted[*new as usize];
@@ -356,34 +380,13 @@ impl std::fmt::Debug for SparseCholesky {
     }
 }
 
-/// One triangle of a symmetric pattern with its diagonal, columns compressed, rows sorted and without duplicates.
-fn triangle(
+/// One triangle of a symmetric pattern with its diagonal, as faer wants it.
+fn compressed(
     n: usize,
-    entries: impl Iterator<Item = (u32, u32)>,
+    entries: impl Iterator<Item = (u32, u32)> + Clone,
     upper: bool,
 ) -> SymbolicSparseColMat<u32> {
-    let diagonal = (0..n as u32).map(|i| (i, i));
-    // (column, row)
-    let mut sorted: Vec<(u32, u32)> = entries
-        .map(|(i, j)| {
-            if upper {
-                (i.max(j), i.min(j))
-            } else {
-                (i.min(j), i.max(j))
-            }
-        })
-        .chain(diagonal)
-        .collect();
-    sorted.sort_unstable();
-    sorted.dedup();
-    let mut starts = vec![0_u32; n + 1];
-    for (column, _) in &sorted {
-        starts[*column as usize + 1] += 1;
-    }
-    for column in 0..n {
-        starts[column + 1] += starts[column];
-    }
-    let rows = sorted.into_iter().map(|(_, row)| row).collect();
+    let (starts, rows) = triangle(n, entries, upper);
     SymbolicSparseColMat::new_checked(n, n, starts, None, rows)
 }
 
@@ -397,37 +400,32 @@ fn diagonal_slot(pattern: &SymbolicSparseColMat<u32>, upper: bool, column: usize
     }
 }
 
-/// Where the factor keeps the diagonal entry of each column.
-fn pivot_slots(symbolic: &SymbolicCholeskyRaw<u32>) -> Vec<u32> {
-    match symbolic {
-        SymbolicCholeskyRaw::Simplicial(s) => s.col_ptr()[..s.ncols()].to_vec(),
-        SymbolicCholeskyRaw::Supernodal(s) => {
-            let mut slots = Vec::with_capacity(s.ncols());
-            for node in 0..s.n_supernodes() {
-                let n_columns = s.supernode_end()[node] - s.supernode_begin()[node];
-                let n_rows = n_columns + s.supernode(node).pattern().len() as u32;
-                let start = s.col_ptr_for_val()[node];
-                slots.extend((0..n_columns).map(|k| start + k * (n_rows + 1)));
-            }
-            slots
-        }
-    }
+/// The panels of a supernodal factor; none of a simplicial one.
+fn panels(symbolic: &SymbolicCholeskyRaw<u32>) -> Vec<Panel> {
+    let SymbolicCholeskyRaw::Supernodal(s) = symbolic else {
+        return Vec::new();
+    };
+    let panel = |node: usize| Panel {
+        begin: s.supernode_begin()[node] as usize,
+        end: s.supernode_end()[node] as usize,
+        start: s.col_ptr_for_val()[node] as usize,
+        below: s.supernode(node).pattern().to_vec(),
+    };
+    (0..s.n_supernodes()).map(panel).collect()
 }
 
-fn checked_permutation(n: usize, order: &[usize]) -> Result<Vec<u32>, SparseError> {
-    let mut seen = vec![false; n];
-    for (position, &index) in order.iter().enumerate() {
-        if index >= n || std::mem::replace(&mut seen[index], true) {
-            return Err(SparseError::Ordering { position, n });
+/// Where the factor keeps the diagonal entry of each column.
+fn pivot_slots(symbolic: &SymbolicCholeskyRaw<u32>, panels: &[Panel]) -> Vec<u32> {
+    match symbolic {
+        SymbolicCholeskyRaw::Simplicial(s) => s.col_ptr()[..s.ncols()].to_vec(),
+        SymbolicCholeskyRaw::Supernodal(_) => {
+            let of_panel = |p: &Panel| {
+                let (start, stride) = (p.start, p.n_rows() + 1);
+                (0..p.n_columns()).map(move |k| (start + k * stride) as u32)
+            };
+            panels.iter().flat_map(of_panel).collect()
         }
     }
-    if order.len() != n {
-        return Err(SparseError::Ordering {
-            position: order.len(),
-            n,
-        });
-    }
-    Ok(order.iter().map(|i| *i as u32).collect())
 }
 
 /// Approximate minimum degree ordering of an upper triangle; `None` when memory runs out.

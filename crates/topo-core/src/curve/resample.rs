@@ -5,6 +5,7 @@ use nalgebra::Vector3;
 use super::polyline::Polyline;
 use super::spline::CubicSpline;
 use crate::error::CurveError;
+use crate::integrate::max_norm;
 
 type V = Vector3<f64>;
 
@@ -100,10 +101,8 @@ impl Sampling {
         let points: Vec<V> = parameters.iter().map(|u| spline.at(*u).0).collect();
         let chords: Vec<f64> = points.windows(2).map(|p| (p[1] - p[0]).norm()).collect();
         let mean = chords.iter().sum::<f64>() / chords.len() as f64;
-        let spread = chords
-            .iter()
-            .map(|c| (c / mean - 1.0).abs())
-            .fold(0.0, f64::max);
+        let deviations: Vec<f64> = chords.iter().map(|c| c / mean - 1.0).collect();
+        let spread = max_norm(&deviations);
         Self {
             parameters,
             points,
@@ -287,6 +286,14 @@ mod tests {
             (open.vertices()[0], open.vertices()[2]),
             (V::zeros(), V::x())
         );
+    }
+
+    #[test]
+    fn scales_beyond_all_reason_are_refused_not_broken() {
+        let huge = trefoil(50).scaled(1e153).unwrap();
+        if let Ok(even) = huge.resampled(40) {
+            assert!(spread(&even) < 1e-9);
+        }
     }
 
     #[test]

@@ -248,7 +248,7 @@ mod tests {
 
     #[test]
     fn crossing_number_of_two_views() {
-        // A pair of edges crossing at right angles, much longer than its distance, crosses in half of ... all views but grazing ones.
+        // Edges that cross at right angles and are much longer than their distance are seen crossing from almost everywhere.
         let (far, gap) = (1.0, 1e-4);
         let over = [V::new(-far, 0.0, gap), V::new(far, 0.0, gap)];
         let under = [V::new(0.0, -far, 0.0), V::new(0.0, far, 0.0)];
