@@ -1,0 +1,129 @@
+//! Where a charged rod is cut.
+
+use serde::{Deserialize, Serialize};
+
+use crate::{ChargedRod, RodError, RodState};
+
+/// How the site of a cut is chosen.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum CutSite {
+    /// The vertex of largest elastic energy density, smoothed over π h.
+    #[default]
+    MaximumEnergyDensity,
+    /// The vertex nearest to a given s/L in [0, 1).
+    At(f64),
+}
+
+/// A local maximum of the smoothed energy density.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct CutCandidate {
+    /// Vertex to cut.
+    pub vertex: usize,
+    /// Its place s/L.
+    pub at: f64,
+    /// Smoothed density per area, in E_b.
+    pub density: f64,
+}
+
+/// Local maxima of a smoothed density on a closed rod within `share` of the largest, largest first.
+///
+/// The maximum is often nearly degenerate, and the discharge depends on which one is cut; these are the sites that a small
+/// imperfection of a real fibre would choose among. Maxima closer than π h to a larger one count as its flank.
+pub fn cut_candidates(smoothed: &[f64], rest_length: f64, share: f64) -> Vec<CutCandidate> {
+    let n = smoothed.len();
+    let peak =
+        |i: usize| smoothed[i] >= smoothed[(i + n - 1) % n] && smoothed[i] > smoothed[(i + 1) % n];
+    let mut peaks: Vec<usize> = (0..n).filter(|&i| peak(i)).collect();
+    if peaks.is_empty() {
+        // a constant density, as of a circle: any site is as good
+        peaks.push(0);
+    }
+    peaks.sort_by(|&a, &b| smoothed[b].total_cmp(&smoothed[a]).then(a.cmp(&b)));
+    let largest = smoothed[peaks[0]];
+    let flank = std::f64::consts::PI / rest_length;
+    let mut kept: Vec<CutCandidate> = Vec::new();
+    for i in peaks {
+        let apart = |j: usize| i.abs_diff(j).min(n - i.abs_diff(j)) as f64;
+        if smoothed[i] >= (1.0 - share) * largest && kept.iter().all(|c| apart(c.vertex) >= flank) {
+            kept.push(CutCandidate {
+                vertex: i,
+                at: i as f64 / n as f64,
+                density: smoothed[i],
+            });
+        }
+    }
+    kept
+}
+
+/// A rod that has just been cut, with the account of what the cut took.
+#[derive(Debug, Clone)]
+pub struct CutRod {
+    /// What was cut.
+    pub charged: ChargedRod,
+    /// The open rod, its first and last vertex still in one place.
+    pub state: RodState,
+    /// Vertex of the closed rod that was doubled.
+    pub vertex: usize,
+    /// Its place s/L.
+    pub at: f64,
+}
+
+impl CutRod {
+    /// The charged rod cut at s/L = `at`.
+    ///
+    /// # Errors
+    /// The rod must be closed and `at` in [0, 1).
+    pub(crate) fn new(charged: &ChargedRod, at: f64) -> Result<Self, RodError> {
+        if !(0.0..1.0).contains(&at) {
+            return Err(RodError::CutSite { at });
+        }
+        let closed = charged.state();
+        let n = closed.n_vertices();
+        let vertex = (at * n as f64).round() as usize % n;
+        Ok(Self {
+            charged: charged.clone(),
+            state: closed.cut_at(vertex)?,
+            vertex,
+            at: vertex as f64 / n as f64,
+        })
+    }
+
+    /// Whether every pair of points near the two tips that only the seam keeps apart is more than `distance` apart, so that
+    /// the tips may from now on touch each other as strands do.
+    pub fn tips_have_parted(state: &RodState, distance: f64, window: f64) -> bool {
+        let (x, n) = (state.vertices(), state.n_vertices());
+        let reach = (window / state.rest_length()).ceil() as usize;
+        let square = distance * distance;
+        (0..=reach.min(n - 1)).all(|i| {
+            (0..=(reach - i).min(n - 1)).all(|k| {
+                let j = n - 1 - k;
+                // a short rod: the pair is close along the rod itself
+                j <= i + 2 * reach || (x[i] - x[j]).norm_squared() > square
+            })
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn candidates_are_peaks_within_the_share_and_not_on_a_flank() {
+        let n = 200;
+        let mut density = vec![1.0; n];
+        for (centre, height) in [(20isize, 3.0), (25, 2.99), (110, 2.95), (160, 2.5)] {
+            for k in -2isize..=2 {
+                let i = (centre + k).rem_euclid(n as isize) as usize;
+                density[i] = f64::max(density[i], height - 0.1 * k.abs() as f64);
+            }
+        }
+        let found = cut_candidates(&density, 0.25, 0.03);
+        assert_eq!(
+            found.iter().map(|c| c.vertex).collect::<Vec<_>>(),
+            [20, 110]
+        );
+        assert_eq!(cut_candidates(&vec![1.0; 30], 0.25, 0.03).len(), 1);
+    }
+}

@@ -1,0 +1,149 @@
+//! Discharging: the cut rod opens until its elastic energy is released.
+
+use serde::{Deserialize, Serialize};
+use topo_core::{Interrupt, Sample, Schedule, Scheduled, StopReason};
+
+use super::RodSimulation;
+use super::cut::CutRod;
+use super::record::{CurveRecorder, RunRecord, SampleRecorder, Scales};
+use crate::{Ends, RodError, RodModel, RodState};
+
+/// How far a discharge is followed and how often it is looked at.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct DischargeSettings {
+    /// Share of the elastic energy after the cut whose release ends the run.
+    pub until_released: f64,
+    /// Longest time followed, in T_0.
+    pub longest: f64,
+    /// First output time after the cut, in T_0.
+    pub first_output: f64,
+    /// Output times a decade.
+    pub outputs_per_decade: f64,
+    /// What holds or loads the ends of the open rod.
+    pub ends: Ends,
+}
+
+impl Default for DischargeSettings {
+    fn default() -> Self {
+        Self {
+            until_released: 0.999,
+            longest: 500.0,
+            first_output: 1e-3,
+            outputs_per_decade: 16.0,
+            ends: Ends::default(),
+        }
+    }
+}
+
+/// A discharge: where it was cut, what the cut took, and how the rest was released.
+#[derive(Debug, Clone)]
+pub struct Discharge {
+    /// Place of the cut, s/L.
+    pub at: f64,
+    /// Energy per part that the cut itself removed (contact included), in E_0.
+    pub removed: f64,
+    /// Elastic energy just after the cut, in E_0: released shares count from it.
+    pub start: f64,
+    /// When the tips had parted so far that they count as separate strands, in T_0.
+    pub parted: Option<f64>,
+    /// The run.
+    pub record: RunRecord,
+}
+
+impl Discharge {
+    /// Whether the share asked for was released.
+    pub fn is_finished(&self) -> bool {
+        matches!(self.record.report.stop, StopReason::Condition(_))
+    }
+}
+
+impl CutRod {
+    /// Lets the open rod go.
+    ///
+    /// # Errors
+    /// A setting out of range, or end conditions that contradict each other.
+    pub fn discharge(
+        &self,
+        settings: &DischargeSettings,
+        interrupt: &Interrupt,
+    ) -> Result<Discharge, RodError> {
+        let battery = self.charged.battery();
+        topo_core::in_range(
+            "discharge.until_released",
+            settings.until_released,
+            1e-6,
+            1.0 - 1e-9,
+        )?;
+        topo_core::positive("discharge.longest", settings.longest)?;
+        let (parameters, tube) = (battery.parameters(), battery.tube());
+        let state = self.state.clone();
+        let mut model = RodModel::new(
+            parameters,
+            &tube,
+            battery.accuracy(),
+            battery.guards,
+            settings.ends,
+            &state,
+        )?;
+        model.set_cyclic(true);
+        let closed: f64 = self.charged.record().report.ledger.stored_total();
+        model.start(&state)?;
+        let scales = Scales::of(&state);
+        let elastic = |s: &Sample<'_, RodState>| {
+            s.ledger.stored_total() - s.ledger.stored_in("contact").unwrap_or(0.0)
+        };
+        let opened = model.account().stored_total();
+        let start = opened - model.account().stored_in("contact").unwrap_or(0.0);
+        model.record_cut(closed, closed - opened);
+        let window = model.pairs().window().outer();
+        let mut simulation = RodSimulation::new(model, state, battery.accuracy(), interrupt)?;
+        let mut curve = CurveRecorder::new(scales);
+        let mut samples = SampleRecorder::new(scales, tube, parameters.twist.is_some());
+        let outputs = Schedule::log_spaced(
+            settings.first_output * scales.time,
+            settings.outputs_per_decade,
+        )?;
+        let (until, goal) = (
+            settings.longest * scales.time,
+            (1.0 - settings.until_released) * start,
+        );
+        let mut parted = None;
+        let stop = {
+            let mut see_step = |s: &Sample<'_, RodState>| curve.record(s);
+            let mut see_sample = |s: &Sample<'_, RodState>| samples.record(s);
+            let mut observers = [
+                Scheduled::new(Schedule::always(), &mut see_step),
+                Scheduled::new(outputs, &mut see_sample),
+            ];
+            let mut stop = simulation.run(until, &mut observers, &mut |s| {
+                if elastic(s) <= goal {
+                    Some("released".to_owned())
+                } else {
+                    CutRod::tips_have_parted(s.state, tube.contact_diameter, window)
+                        .then(|| PARTED.to_owned())
+                }
+            });
+            if stop == StopReason::Condition(PARTED.to_owned()) {
+                parted = Some(simulation.time() / scales.time);
+                simulation.modify(|model, _| model.set_cyclic(false));
+                stop = simulation.run(until, &mut observers, &mut |s| {
+                    (elastic(s) <= goal).then(|| "released".to_owned())
+                });
+            }
+            stop
+        };
+        samples.record(&simulation.sample());
+        let record = RunRecord::new(&simulation, stop, curve, samples);
+        Ok(Discharge {
+            at: self.at,
+            removed: (closed - opened) / scales.energy,
+            start: start / scales.energy,
+            parted,
+            record,
+        })
+    }
+}
+
+/// The condition that ends the first stretch of a discharge.
+const PARTED: &str = "tips parted";

@@ -1,0 +1,220 @@
+//! What a phase of a run leaves behind: energies at every step, states at output times, and a report.
+
+use std::f64::consts::PI;
+
+use nalgebra::Vector3;
+use serde::Serialize;
+use topo_core::{Counters, DischargeCurve, Ledger, RejectionCounts, Sample, StopReason};
+
+use crate::contact::ContactPairs;
+use crate::model::{CHANNELS, WorkAccount};
+use crate::{RodState, Tube};
+
+/// Terms of the energy as tables name them; a rod without one of them reports 0.
+pub(crate) const PARTS: [&str; 4] = ["bend", "twist", "stretch", "contact"];
+
+/// The rod at one output time.
+#[derive(Debug, Clone, Serialize)]
+pub struct RodSample {
+    /// Time since the start of the phase, in T_0.
+    pub time: f64,
+    /// Bend, twist, stretch and contact energy, in E_0.
+    pub stored: [f64; 4],
+    /// Dissipated so far by internal viscosity, twist viscosity and friction, in E_0.
+    pub dissipated: [f64; 3],
+    /// Work done on the rod so far, in E_0.
+    pub work: f64,
+    /// Writhe of the centreline.
+    pub writhe: f64,
+    /// Total twist, in turns.
+    pub total_twist: f64,
+    /// Vertex pairs of different strands closer than the contact diameter.
+    pub n_contacts: usize,
+    /// Least distance of vertices of different strands, in h; none if no strands are in reach.
+    pub min_distance: Option<f64>,
+    /// Distance of the ends, in h.
+    pub end_to_end: f64,
+    /// Positions, in h.
+    pub vertices: Vec<Vector3<f64>>,
+    /// Integrated twists.
+    pub twists: Vec<f64>,
+}
+
+impl RodSample {
+    /// Elastic energy, contact left out, in E_0.
+    pub fn elastic(&self) -> f64 {
+        self.stored[..3].iter().sum()
+    }
+}
+
+/// Counters and guards of a phase.
+#[derive(Debug, Clone, Serialize)]
+pub struct PhaseReport {
+    /// Why it ended.
+    pub stop: StopReason,
+    /// Time it covered, in T_0.
+    pub time: f64,
+    /// Accepted steps.
+    pub n_steps: u64,
+    /// Refused steps by name.
+    pub rejections: RejectionCounts,
+    /// Work of the integrator.
+    pub counters: Counters,
+    /// Work of the model by component.
+    pub work: WorkAccount,
+    /// Relative residual of the energy account.
+    pub ledger_residual: f64,
+    /// The energy account, per area in E_b h.
+    pub ledger: Ledger,
+    /// Least distance of vertices of different strands over the contact diameter; none if none came in reach.
+    pub min_distance_over_contact: Option<f64>,
+    /// Largest |Δ(Tw + Wr)| seen while closed, in turns; none for an open rod or one without twist.
+    pub link_drift: Option<f64>,
+}
+
+/// What a phase leaves behind.
+#[derive(Debug, Clone, Serialize)]
+pub struct RunRecord {
+    /// Energies at every accepted step: times in T_0, energies in E_0.
+    pub curve: DischargeCurve,
+    /// The rod at output times.
+    pub samples: Vec<RodSample>,
+    /// Counters and guards.
+    pub report: PhaseReport,
+}
+
+/// Reduced to reported units: T_0 = 2 L for times, E_0 = A-specific L/π for energies per area.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Scales {
+    pub time: f64,
+    pub energy: f64,
+}
+
+impl Scales {
+    pub(crate) fn of(state: &RodState) -> Self {
+        Self {
+            time: 2.0 * state.length(),
+            energy: state.length() / PI,
+        }
+    }
+}
+
+/// Observer of every step: the energy curve.
+pub(crate) struct CurveRecorder {
+    pub curve: DischargeCurve,
+    scales: Scales,
+}
+
+impl CurveRecorder {
+    pub(crate) fn new(scales: Scales) -> Self {
+        Self {
+            curve: DischargeCurve::new(PARTS, CHANNELS),
+            scales,
+        }
+    }
+
+    pub(crate) fn record(&mut self, sample: &Sample<'_, RodState>) {
+        let time = sample.time / self.scales.time;
+        // a run continued after a pause shows its last state again
+        if self.curve.time().last().is_none_or(|last| time > *last) {
+            let (stored, dissipated) = books(sample.ledger, self.scales.energy);
+            if let Err(error) = self.curve.push(time, &stored, &dissipated) {
+                tracing::warn!(%error, "a step is missing from the energy curve");
+            }
+        }
+    }
+}
+
+fn books(ledger: &Ledger, scale: f64) -> ([f64; 4], [f64; 3]) {
+    let stored = PARTS.map(|name| ledger.stored_in(name).unwrap_or(0.0) / scale);
+    let dissipated = CHANNELS.map(|name| ledger.dissipated_by(name).unwrap_or(0.0) / scale);
+    (stored, dissipated)
+}
+
+/// Observer at output times: the rod and what is measured on it.
+pub(crate) struct SampleRecorder {
+    pub samples: Vec<RodSample>,
+    pub link_drift: Option<f64>,
+    link_start: Option<f64>,
+    scales: Scales,
+    tube: Tube,
+    has_twist: bool,
+}
+
+impl SampleRecorder {
+    pub(crate) fn new(scales: Scales, tube: Tube, has_twist: bool) -> Self {
+        Self {
+            samples: Vec::new(),
+            link_drift: None,
+            link_start: None,
+            scales,
+            tube,
+            has_twist,
+        }
+    }
+
+    pub(crate) fn record(&mut self, sample: &Sample<'_, RodState>) {
+        let (state, time) = (sample.state, sample.time / self.scales.time);
+        if self.samples.last().is_some_and(|last| last.time >= time) {
+            return;
+        }
+        let (stored, dissipated) = books(sample.ledger, self.scales.energy);
+        let (writhe, total_twist) = (state.writhe(), state.total_twist());
+        if state.is_closed() && self.has_twist {
+            let link = writhe + total_twist;
+            let start = *self.link_start.get_or_insert(link);
+            self.link_drift = Some(self.link_drift.unwrap_or(0.0).max((link - start).abs()));
+        }
+        let mut pairs = ContactPairs::new(
+            self.tube.contact_diameter.max(self.tube.friction_range),
+            0.01,
+        );
+        pairs.set_cyclic(state.is_closed());
+        pairs.update(state);
+        let touching =
+            |p: &&crate::contact::ActivePair| p.strands && p.distance < self.tube.contact_diameter;
+        self.samples.push(RodSample {
+            time,
+            stored,
+            dissipated,
+            work: sample.ledger.work() / self.scales.energy,
+            writhe,
+            total_twist,
+            n_contacts: pairs.active().iter().filter(touching).count(),
+            min_distance: pairs.least_distance(),
+            end_to_end: state.end_to_end(),
+            vertices: state.vertices().to_vec(),
+            twists: state.twists().to_vec(),
+        });
+    }
+}
+
+impl RunRecord {
+    pub(crate) fn new(
+        simulation: &super::RodSimulation,
+        stop: StopReason,
+        curve: CurveRecorder,
+        samples: SampleRecorder,
+    ) -> Self {
+        let model = simulation.model();
+        let ledger = model.account().clone();
+        let distance = model.least_distance() / samples.tube.contact_diameter;
+        let report = PhaseReport {
+            stop,
+            time: simulation.time() / curve.scales.time,
+            n_steps: simulation.n_steps(),
+            rejections: simulation.rejections().clone(),
+            counters: simulation.counters(),
+            work: model.work(),
+            ledger_residual: ledger.relative_residual(),
+            ledger,
+            min_distance_over_contact: Some(distance).filter(|d| d.is_finite()),
+            link_drift: samples.link_drift,
+        };
+        Self {
+            curve: curve.curve,
+            samples: samples.samples,
+            report,
+        }
+    }
+}

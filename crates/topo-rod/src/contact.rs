@@ -1,0 +1,11 @@
+//! Which parts of a rod can touch: broad phase, skin list, window along the rod, and distances of segments.
+
+mod broad_phase;
+mod pairs;
+mod segments;
+mod window;
+
+pub use broad_phase::{BroadPhase, close_pairs};
+pub use pairs::{ActivePair, ContactPairs};
+pub use segments::segment_distance;
+pub use window::{Window, arc_separation};

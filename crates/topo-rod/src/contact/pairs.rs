@@ -1,0 +1,279 @@
+//! Verlet list of vertex pairs, and the pairs in reach at the current state.
+
+use nalgebra::Vector3;
+
+use super::{BroadPhase, Window, arc_separation};
+use crate::RodState;
+
+/// A pair of vertices in reach of each other.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ActivePair {
+    /// Smaller index.
+    pub i: u32,
+    /// Larger index.
+    pub j: u32,
+    /// w_i w_j W: quadrature weights times the window.
+    pub weight: f64,
+    /// Distance r, in h.
+    pub distance: f64,
+    /// (x_i − x_j)/r.
+    pub normal: Vector3<f64>,
+    /// Whether W = 1: not neighbours along the rod by any measure.
+    pub strands: bool,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Candidate {
+    i: u32,
+    j: u32,
+    weight: f64,
+    strands: bool,
+}
+
+/// Pairs of vertices that may touch or rub: a list with a skin, rebuilt when a vertex has moved half of it.
+#[derive(Debug)]
+pub struct ContactPairs {
+    window: Window,
+    reach: f64,
+    skin: f64,
+    cyclic: bool,
+    candidates: Vec<Candidate>,
+    reference: Vec<Vector3<f64>>,
+    active: Vec<ActivePair>,
+    broad_phase: BroadPhase,
+    n_rebuilds: u64,
+}
+
+impl ContactPairs {
+    /// A list for strands that act on each other up to the distance `reach`.
+    pub fn new(reach: f64, skin: f64) -> Self {
+        Self {
+            window: Window::new(reach),
+            reach,
+            skin,
+            cyclic: true,
+            candidates: Vec::new(),
+            reference: Vec::new(),
+            active: Vec::new(),
+            broad_phase: BroadPhase::default(),
+            n_rebuilds: 0,
+        }
+    }
+
+    /// Pairs in reach at the state of the last update, in ascending order.
+    pub fn active(&self) -> &[ActivePair] {
+        &self.active
+    }
+
+    /// Pairs (i, j) of the list, ascending.
+    pub fn candidates(&self) -> impl ExactSizeIterator<Item = (u32, u32)> + '_ {
+        self.candidates.iter().map(|c| (c.i, c.j))
+    }
+
+    /// Listed pairs closer than the reach plus `margin` at `state`, ascending.
+    pub fn near(&self, state: &RodState, margin: f64, out: &mut Vec<(u32, u32)>) {
+        let (x, limit) = (state.vertices(), (self.reach + margin).powi(2));
+        out.clear();
+        let close = |c: &&Candidate| (x[c.i as usize] - x[c.j as usize]).norm_squared() < limit;
+        out.extend(self.candidates.iter().filter(close).map(|c| (c.i, c.j)));
+    }
+
+    /// Least distance of two vertices of different strands, if any are in reach.
+    pub fn least_distance(&self) -> Option<f64> {
+        self.active
+            .iter()
+            .filter(|p| p.strands)
+            .map(|p| p.distance)
+            .min_by(f64::total_cmp)
+    }
+
+    /// How often the list was built.
+    pub fn n_rebuilds(&self) -> u64 {
+        self.n_rebuilds
+    }
+
+    /// The window along the rod.
+    pub fn window(&self) -> Window {
+        self.window
+    }
+
+    /// Bytes held.
+    pub fn n_bytes(&self) -> usize {
+        self.candidates.capacity() * size_of::<Candidate>()
+            + self.reference.capacity() * size_of::<Vector3<f64>>()
+            + self.active.capacity() * size_of::<ActivePair>()
+    }
+
+    /// Whether arclength is counted the shorter way round: always while closed, and after a cut until the tips have parted.
+    pub fn set_cyclic(&mut self, cyclic: bool) {
+        if cyclic != self.cyclic {
+            self.cyclic = cyclic;
+            self.reference.clear();
+        }
+    }
+
+    /// Whether arclength is counted the shorter way round.
+    pub fn is_cyclic(&self) -> bool {
+        self.cyclic
+    }
+
+    /// Makes the list good for `state`; returns whether it had to be rebuilt.
+    pub fn ensure(&mut self, state: &RodState) -> bool {
+        let x = state.vertices();
+        let limit = (0.5 * self.skin).powi(2);
+        let stale = self.reference.len() != x.len()
+            || x.iter()
+                .zip(&self.reference)
+                .any(|(a, b)| (a - b).norm_squared() > limit);
+        if stale {
+            self.rebuild(state);
+        }
+        stale
+    }
+
+    /// Listed pairs closer than `limit` at positions `x`; false if the list does not reach that far.
+    pub fn vertices_within(
+        &self,
+        limit: f64,
+        x: &[Vector3<f64>],
+        near: &mut Vec<(u32, u32)>,
+    ) -> bool {
+        near.clear();
+        if limit > self.reach {
+            return false;
+        }
+        let square = limit * limit;
+        let close = |c: &&Candidate| (x[c.i as usize] - x[c.j as usize]).norm_squared() < square;
+        near.extend(self.candidates.iter().filter(close).map(|c| (c.i, c.j)));
+        true
+    }
+
+    /// Pairs within reach at `state`; returns whether the list had to be rebuilt.
+    pub fn update(&mut self, state: &RodState) -> bool {
+        let x = state.vertices();
+        let stale = self.ensure(state);
+        self.active.clear();
+        let reach = self.reach * self.reach;
+        for c in &self.candidates {
+            let d = x[c.i as usize] - x[c.j as usize];
+            let square = d.norm_squared();
+            if square < reach {
+                let distance = square.sqrt();
+                // two vertices in one point have no direction; the certificate stops the run there, the force stays finite
+                let normal = if distance > 1e-9 {
+                    d / distance
+                } else {
+                    Vector3::zeros()
+                };
+                self.active.push(ActivePair {
+                    i: c.i,
+                    j: c.j,
+                    weight: c.weight,
+                    distance: distance.max(1e-9),
+                    normal,
+                    strands: c.strands,
+                });
+            }
+        }
+        stale
+    }
+
+    fn rebuild(&mut self, state: &RodState) {
+        let (x, n) = (state.vertices(), state.n_vertices());
+        let (l0, length, cyclic, window) = (
+            state.rest_length(),
+            state.length(),
+            self.cyclic,
+            self.window,
+        );
+        let within = self.reach + self.skin;
+        let stride = ((within / (2.0 * l0)).round() as usize).clamp(1, n.div_ceil(4));
+        let quadrature = |i: usize| {
+            if !state.is_closed() && (i == 0 || i + 1 == n) {
+                0.5 * l0
+            } else {
+                l0
+            }
+        };
+        let candidates = &mut self.candidates;
+        candidates.clear();
+        self.broad_phase
+            .for_each_pair(x, state.is_closed(), stride, within, |a, b| {
+                for i in a * stride..((a + 1) * stride).min(n) {
+                    for j in (b * stride).max(i + 1)..((b + 1) * stride).min(n) {
+                        let separation = arc_separation(i, j, l0, length, cyclic);
+                        if separation > window.inner()
+                            && (x[i] - x[j]).norm_squared() < within * within
+                        {
+                            let weight = quadrature(i) * quadrature(j) * window.weight(separation);
+                            candidates.push(Candidate {
+                                i: i as u32,
+                                j: j as u32,
+                                weight,
+                                strands: separation >= window.outer(),
+                            });
+                        }
+                    }
+                }
+            });
+        candidates.sort_unstable_by_key(|c| (c.i, c.j));
+        self.reference.clear();
+        self.reference.extend_from_slice(x);
+        self.n_rebuilds += 1;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use topo_core::Polyline;
+
+    #[test]
+    fn straight_rod_has_no_pair_in_any_reach() {
+        let line: Vec<_> = (0..=200)
+            .map(|k| Vector3::new(0.25 * k as f64, 0.0, 0.0))
+            .collect();
+        let rod = RodState::new(&Polyline::new(line, false).unwrap(), 50.0, 0.0).unwrap();
+        for reach in [2.0, 1.57, 3.05] {
+            let mut pairs = ContactPairs::new(reach, 0.5);
+            pairs.set_cyclic(false);
+            pairs.update(&rod);
+            assert!(pairs.active().is_empty());
+        }
+    }
+
+    #[test]
+    fn list_agrees_with_brute_force_while_the_rod_moves_inside_the_skin() {
+        let n = 120;
+        let curve: Vec<_> = (0..n)
+            .map(|k| {
+                let u = std::f64::consts::TAU * k as f64 / n as f64;
+                Vector3::new(
+                    (2.0 + u.sin() * 0.3) * (2.0 * u).cos() * 1.5,
+                    1.5 * (2.0 * u).sin(),
+                    (3.0 * u).sin(),
+                )
+            })
+            .collect();
+        let rod = RodState::new(&Polyline::new(curve, true).unwrap(), 40.0, 0.0).unwrap();
+        let mut pairs = ContactPairs::new(1.8, 0.5);
+        assert!(pairs.update(&rod));
+        let mut moved = rod.clone();
+        let step: Vec<f64> = (0..3 * n).map(|k| 0.1 * (k as f64).sin()).collect();
+        rod.moved_by(&step, false, 1, &mut moved);
+        assert!(!pairs.update(&moved));
+        let (x, w) = (moved.vertices(), Window::new(1.8));
+        let mut brute = Vec::new();
+        for i in 0..n {
+            for j in i + 1..n {
+                let s = arc_separation(i, j, moved.rest_length(), moved.length(), true);
+                if (x[i] - x[j]).norm() < 1.8 && w.weight(s) > 0.0 {
+                    brute.push((i as u32, j as u32));
+                }
+            }
+        }
+        assert!(brute.len() > 20);
+        let found: Vec<_> = pairs.active().iter().map(|p| (p.i, p.j)).collect();
+        assert_eq!(found, brute);
+    }
+}

@@ -1,0 +1,135 @@
+//! What holds, moves or loads the ends of an open rod.
+
+use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
+
+use crate::{RodError, RodState};
+
+/// How one end is held.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum EndCondition {
+    /// Nothing holds it.
+    #[default]
+    Free,
+    /// The end vertex is held; the rod may turn about it.
+    Pinned,
+    /// End vertex, end tangent and end rotation are held.
+    Clamped,
+}
+
+/// Prescribed motion and load of one end; zero by default.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct EndMotion {
+    /// Velocity of a held end, in h E_b/η.
+    pub velocity: [f64; 3],
+    /// Rotation rate about the end tangent of a clamped end, in E_b/η.
+    pub rotation_rate: f64,
+    /// Force on a free end, per area, in E_b.
+    pub force: [f64; 3],
+    /// Torque about the tangent on an end that is not clamped, per area, in E_b h.
+    pub torque: f64,
+}
+
+/// Both ends of an open rod. The default, free and unloaded, costs nothing.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Ends {
+    /// How the first and the last vertex are held.
+    pub conditions: [EndCondition; 2],
+    /// How they move and what loads them.
+    pub motions: [EndMotion; 2],
+}
+
+impl Ends {
+    /// Checks that loads act on what is free and motions on what is held, and that forces on a free rod balance.
+    ///
+    /// # Errors
+    /// Names the contradiction.
+    pub fn checked(self, has_twist: bool) -> Result<Self, RodError> {
+        let wrong = |reason| Err(RodError::Ends { reason });
+        let mut net = Vector3::zeros();
+        let mut net_torque = 0.0;
+        for (condition, motion) in self.conditions.iter().zip(&self.motions) {
+            for x in motion
+                .velocity
+                .iter()
+                .chain(&motion.force)
+                .chain([&motion.rotation_rate, &motion.torque])
+            {
+                topo_core::finite("ends", *x)?;
+            }
+            let (moves, turns) = (motion.velocity != [0.0; 3], motion.rotation_rate != 0.0);
+            let (pushed, twisted) = (motion.force != [0.0; 3], motion.torque != 0.0);
+            match condition {
+                EndCondition::Free if moves => {
+                    return wrong("a free end has no prescribed velocity: pin or clamp it");
+                }
+                EndCondition::Pinned | EndCondition::Clamped if pushed => {
+                    return wrong("a held end takes no force: free it");
+                }
+                EndCondition::Clamped if twisted => {
+                    return wrong("a clamped end takes no torque: pin or free it");
+                }
+                EndCondition::Free | EndCondition::Pinned if turns => {
+                    return wrong("only a clamped end has a prescribed rotation: clamp it");
+                }
+                _ => {}
+            }
+            if (turns || twisted) && !has_twist {
+                return wrong("a rod without twist has no end rotation or torque: give it `twist`");
+            }
+            net += Vector3::from(motion.force);
+            net_torque += motion.torque;
+        }
+        let free = self.conditions == [EndCondition::Free; 2];
+        if free && net.norm() > 1e-12 {
+            return wrong(
+                "the forces on a rod with two free ends must balance: its viscosity is internal, nothing else would hold it",
+            );
+        }
+        if !self.conditions.contains(&EndCondition::Clamped) && f64::abs(net_torque) > 1e-12 {
+            return wrong("the torques on a rod without a clamped end must balance");
+        }
+        Ok(self)
+    }
+
+    /// Whether nothing holds, moves or loads the ends.
+    pub fn is_free(&self) -> bool {
+        *self == Self::default()
+    }
+
+    /// Whether work can flow in or out at the ends.
+    pub fn is_driven(&self) -> bool {
+        self.motions != [EndMotion::default(); 2]
+    }
+
+    /// Vertices that are held, each with the velocity it is given.
+    pub fn held_vertices(&self, state: &RodState) -> Vec<(usize, Vector3<f64>)> {
+        let last = state.n_vertices() - 1;
+        let mut held = Vec::new();
+        for (end, order) in [[0, 1], [last, last - 1]].into_iter().enumerate() {
+            let n = match self.conditions[end] {
+                EndCondition::Free => 0,
+                EndCondition::Pinned => 1,
+                EndCondition::Clamped => 2,
+            };
+            held.extend(
+                order[..n]
+                    .iter()
+                    .map(|&i| (i, Vector3::from(self.motions[end].velocity))),
+            );
+        }
+        held
+    }
+
+    /// Edges whose rotation is held, each with its rate.
+    pub fn held_edges(&self, state: &RodState) -> Vec<(usize, f64)> {
+        [(0, 0), (1, state.n_edges() - 1)]
+            .into_iter()
+            .filter(|&(end, _)| self.conditions[end] == EndCondition::Clamped)
+            .map(|(end, edge)| (edge, self.motions[end].rotation_rate))
+            .collect()
+    }
+}

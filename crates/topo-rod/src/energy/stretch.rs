@@ -1,0 +1,63 @@
+//! Stretch energy.
+
+use nalgebra::Matrix3;
+
+use super::{At, EnergyTerm, Force, Stiffness};
+
+/// Stretch with γ = E/E_b.
+///
+/// ```math
+/// e = (γ/2) Σ_j l_0 (|e_j|/l_0 − 1)²
+/// ```
+///
+/// # Validation
+/// `val_stretch_decay_rate_of_a_straight_rod`.
+#[derive(Debug, Clone, Copy)]
+pub struct Stretch {
+    /// γ.
+    pub ratio: f64,
+}
+
+impl EnergyTerm for Stretch {
+    fn name(&self) -> &'static str {
+        "stretch"
+    }
+
+    fn energy(&self, at: At<'_>) -> f64 {
+        let l0 = at.state.rest_length();
+        let sum: f64 = at
+            .geometry
+            .edge_length
+            .iter()
+            .map(|l| (l / l0 - 1.0).powi(2))
+            .sum();
+        0.5 * self.ratio * l0 * sum
+    }
+
+    fn add_force(&self, at: At<'_>, force: &mut Force) -> f64 {
+        let (state, g, l0) = (at.state, at.geometry, at.state.rest_length());
+        let mut sum = 0.0;
+        for j in 0..state.n_edges() {
+            let strain = g.edge_length[j] / l0 - 1.0;
+            sum += strain * strain;
+            let tension = g.tangent[j] * (self.ratio * strain);
+            force.vertex[j] += tension;
+            force.vertex[state.edge_end(j)] -= tension;
+        }
+        0.5 * self.ratio * l0 * sum
+    }
+
+    fn add_stiffness(&self, at: At<'_>, stiffness: &mut Stiffness) {
+        let (state, g, l0) = (at.state, at.geometry, at.state.rest_length());
+        for j in 0..state.n_edges() {
+            let t = g.tangent[j];
+            // a rod under tension also resists turning; under compression that part is negative and left out
+            let across = (self.ratio * (g.edge_length[j] / l0 - 1.0) / g.edge_length[j]).max(0.0);
+            let along = self.ratio / l0 - across;
+            let block = t * t.transpose() * along + Matrix3::from_diagonal_element(across);
+            stiffness.diagonal[j] += block;
+            stiffness.diagonal[state.edge_end(j)] += block;
+            stiffness.next[j] -= block;
+        }
+    }
+}

@@ -1,0 +1,113 @@
+//! Forces against finite differences of the energy.
+
+use nalgebra::Vector3;
+use topo_core::{Polyline, finite_difference_gradient};
+
+use super::*;
+
+/// A crumpled curve with strands in contact, stretched and twisted unevenly.
+fn crumpled(closed: bool) -> RodState {
+    let n = 40;
+    let vertices: Vec<_> = (0..n)
+        .map(|k| {
+            let u = std::f64::consts::TAU * k as f64 / n as f64;
+            Vector3::new(
+                (2.0 + 0.5 * (3.0 * u).cos()) * (2.0 * u).cos(),
+                (2.1 + 0.4 * (3.0 * u).cos()) * (2.0 * u).sin(),
+                0.8 * (3.0 * u).sin(),
+            )
+        })
+        .collect();
+    let rod = RodState::new(&Polyline::new(vertices, true).unwrap(), 24.0, 0.7).unwrap();
+    let rod = if closed { rod } else { rod.cut_at(7).unwrap() };
+    let mut twisted = rod.clone();
+    let n = rod.n_vertices();
+    let step: Vec<f64> = (0..3 * n + rod.n_edges())
+        .map(|k| 0.05 * (k as f64 * 1.7).sin())
+        .collect();
+    rod.moved_by(&step, true, 1, &mut twisted);
+    twisted
+}
+
+fn check(term: &dyn EnergyTerm, reach: f64, probe: f64) {
+    for closed in [true, false] {
+        let rod = crumpled(closed);
+        let (n, n_edges) = (rod.n_vertices(), rod.n_edges());
+        let mut pairs = ContactPairs::new(reach, 0.3);
+        pairs.set_cyclic(closed);
+        let mut energy = |step: &[f64]| {
+            let mut moved = rod.clone();
+            rod.moved_by(step, true, 2, &mut moved);
+            pairs.update(&moved);
+            term.energy(At {
+                state: &moved,
+                geometry: &Geometry::new(&moved),
+                pairs: &pairs,
+            })
+        };
+        let gradient = finite_difference_gradient(&mut energy, &vec![0.0; 3 * n + n_edges], probe);
+        let mut pairs = ContactPairs::new(reach, 0.3);
+        pairs.set_cyclic(closed);
+        pairs.update(&rod);
+        let mut force = Force::default();
+        force.reset(&rod);
+        let at = At {
+            state: &rod,
+            geometry: &Geometry::new(&rod),
+            pairs: &pairs,
+        };
+        let stored = term.add_force(at, &mut force);
+        assert!(
+            (stored - term.energy(at)).abs() <= 1e-13 * stored,
+            "energy and force disagree on the energy"
+        );
+        assert!(stored > 1e-3, "{} is not at work", term.name());
+        let size = gradient.iter().fold(0.0f64, |a, b| a.max(b.abs()));
+        for i in 0..n {
+            for k in 0..3 {
+                let error = (gradient[k * n + i] + force.vertex[i][k]).abs();
+                assert!(
+                    error < 1e-7 * size,
+                    "{} vertex {i} component {k}: {error:.2e} of {size:.2e}",
+                    term.name()
+                );
+            }
+        }
+        for j in 0..n_edges {
+            let error = (gradient[3 * n + j] + force.torque[j]).abs();
+            assert!(
+                error < 1e-7 * size,
+                "{} edge {j}: {error:.2e} of {size:.2e}",
+                term.name()
+            );
+        }
+    }
+}
+
+#[test]
+fn bend_force_is_the_gradient() {
+    check(&Bend, 0.0, 2e-3);
+}
+
+#[test]
+fn twist_force_is_the_gradient() {
+    check(&Twist { ratio: 0.77 }, 0.0, 2e-3);
+}
+
+#[test]
+fn stretch_force_is_the_gradient() {
+    check(&Stretch { ratio: 5.0 }, 0.0, 2e-3);
+}
+
+#[test]
+fn contact_force_is_the_gradient() {
+    // the second derivative jumps where strands part: a short probe, so that no pair parts within it
+    check(
+        &ContactEnergy {
+            stiffness: 20.0,
+            diameter: 1.7,
+        },
+        1.7,
+        2e-5,
+    );
+}

@@ -1,0 +1,57 @@
+//! Twist energy.
+
+use super::{At, EnergyTerm, Force, Stiffness};
+
+/// Twist, with stiffness α relative to bending.
+///
+/// ```math
+/// e = Σ_i α m_i²/(8 l_0),   ∂m_i/∂e_{i−1} = kb_i/(2|e_{i−1}|),   ∂m_i/∂e_i = kb_i/(2|e_i|)
+/// ```
+///
+/// Its second derivatives in x are left out of the Newton matrix: twist relaxes by the edges' rotation much faster.
+///
+/// # Validation
+/// `val_twist_decay_rate_of_a_straight_rod`, `val_michell_zajac_ring_buckles_at_the_critical_twist`.
+#[derive(Debug, Clone, Copy)]
+pub struct Twist {
+    /// α.
+    pub ratio: f64,
+}
+
+impl Twist {
+    /// Torque τ_i = ∂e/∂m_i carried by a vertex with integrated twist `m`.
+    #[inline]
+    pub fn torque(&self, m: f64, rest_length: f64) -> f64 {
+        self.ratio * m / (4.0 * rest_length)
+    }
+}
+
+impl EnergyTerm for Twist {
+    fn name(&self) -> &'static str {
+        "twist"
+    }
+
+    fn energy(&self, at: At<'_>) -> f64 {
+        let sum: f64 = at.state.twists().iter().map(|m| m * m).sum();
+        self.ratio * sum / (8.0 * at.state.rest_length())
+    }
+
+    fn add_force(&self, at: At<'_>, force: &mut Force) -> f64 {
+        let (state, g, m) = (at.state, at.geometry, at.state.twists());
+        for i in state.interior() {
+            let (before, after) = (state.edge_before(i), i);
+            let torque = self.torque(m[i], state.rest_length());
+            let pull = g.binormal[i] * (0.5 * torque);
+            let on_before = pull / g.edge_length[before];
+            let on_after = pull / g.edge_length[after];
+            force.vertex[before] += on_before;
+            force.vertex[i] += on_after - on_before;
+            force.vertex[state.edge_end(after)] -= on_after;
+            force.torque[before] += torque;
+            force.torque[after] -= torque;
+        }
+        self.energy(at)
+    }
+
+    fn add_stiffness(&self, _at: At<'_>, _stiffness: &mut Stiffness) {}
+}

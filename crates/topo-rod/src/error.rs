@@ -1,0 +1,55 @@
+//! What can be wrong with a rod before a run starts.
+
+use thiserror::Error;
+use topo_core::{CurveError, InvalidValue};
+
+/// A rod, its parameters or its protocol cannot be built as asked.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum RodError {
+    /// A number is out of its range.
+    #[error(transparent)]
+    Value(#[from] InvalidValue),
+    /// The centreline is not usable.
+    #[error("the centreline cannot carry a rod: {0}")]
+    Centreline(#[from] CurveError),
+    /// Fewer edges than a rod needs.
+    #[error("a rod of {n_edges} edges cannot be modelled: use at least {least} edges")]
+    TooFewEdges {
+        /// Edges asked for.
+        n_edges: usize,
+        /// The least number accepted.
+        least: usize,
+    },
+    /// The operation needs the other kind of rod.
+    #[error("{operation} needs {needed} rod")]
+    WrongTopology {
+        /// What was asked.
+        operation: &'static str,
+        /// "a closed" or "an open".
+        needed: &'static str,
+    },
+    /// An end condition contradicts another, or the rod would be pushed without hold.
+    #[error("the ends are not held consistently: {reason}")]
+    Ends {
+        /// What is inconsistent, and what would be right.
+        reason: &'static str,
+    },
+    /// A turning angle reached a half turn: the discrete curvature has no value there.
+    #[error(
+        "the rod folds back on itself at vertex {vertex}: use more edges or a smoother start curve"
+    )]
+    Folded {
+        /// The vertex where two edges are opposite.
+        vertex: usize,
+    },
+    /// The start state has no finite energy.
+    #[error("the rod cannot start: {0}")]
+    Start(#[from] topo_core::Rejection),
+    /// The cut is outside of the rod.
+    #[error("cut at s/L = {at} is not on the rod: use a number in [0, 1)")]
+    CutSite {
+        /// Position asked for.
+        at: f64,
+    },
+}

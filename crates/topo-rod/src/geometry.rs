@@ -1,0 +1,54 @@
+//! Edge lengths, tangents and curvature binormals of a state, computed once and read by every term.
+
+use nalgebra::Vector3;
+
+use crate::RodState;
+
+/// Geometry of one state: what bend, twist, stretch and twist viscosity share.
+#[derive(Debug, Clone, Default)]
+pub struct Geometry {
+    /// Length of each edge, in h.
+    pub edge_length: Vec<f64>,
+    /// Unit tangent of each edge.
+    pub tangent: Vec<Vector3<f64>>,
+    /// c_i = t_{i−1}·t_i of each interior vertex (1 at free ends).
+    pub cosine: Vec<f64>,
+    /// Curvature binormal kb_i = 2 t_{i−1} × t_i/(1 + c_i), |kb| = 2 tan(φ/2) (0 at free ends).
+    pub binormal: Vec<Vector3<f64>>,
+}
+
+impl Geometry {
+    /// Geometry of `state`.
+    pub fn new(state: &RodState) -> Self {
+        let mut g = Self::default();
+        g.update(state);
+        g
+    }
+
+    /// Recomputes all; returns false if an edge has no length or a turning angle reached a half turn.
+    pub fn update(&mut self, state: &RodState) -> bool {
+        let (x, n, n_edges) = (state.vertices(), state.n_vertices(), state.n_edges());
+        self.edge_length.resize(n_edges, 0.0);
+        self.tangent.resize(n_edges, Vector3::zeros());
+        self.cosine.clear();
+        self.cosine.resize(n, 1.0);
+        self.binormal.clear();
+        self.binormal.resize(n, Vector3::zeros());
+        let mut sound = true;
+        for j in 0..n_edges {
+            let e = x[state.edge_end(j)] - x[j];
+            let length = e.norm();
+            sound &= length > 1e-12;
+            self.edge_length[j] = length;
+            self.tangent[j] = e / length;
+        }
+        for i in state.interior() {
+            let (a, b) = (self.tangent[state.edge_before(i)], self.tangent[i]);
+            let c = a.dot(&b);
+            sound &= c > -1.0 + 1e-6;
+            self.cosine[i] = c;
+            self.binormal[i] = a.cross(&b) * (2.0 / (1.0 + c));
+        }
+        sound
+    }
+}

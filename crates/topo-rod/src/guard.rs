@@ -1,0 +1,134 @@
+//! What every step must pass before it is accepted.
+
+use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
+use topo_core::Rejection;
+
+use crate::RodState;
+use crate::contact::ContactPairs;
+use crate::contact::segment_distance;
+
+/// Limits on one step; each rejects with its own name.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Guards {
+    /// Largest displacement of a vertex, in h.
+    pub displacement: f64,
+    /// Largest rise of the total energy beyond the work done on the rod, relative.
+    pub energy_rise: f64,
+    /// Largest drift of Tw + Wr of a closed rod before the run fails, in turns.
+    pub link_drift: f64,
+}
+
+impl Default for Guards {
+    fn default() -> Self {
+        Self {
+            displacement: 0.25,
+            energy_rise: 1e-4,
+            link_drift: 0.01,
+        }
+    }
+}
+
+/// Largest displacement of a vertex in a component-major step, and where.
+pub(crate) fn largest_displacement(step: &[f64], n: usize) -> (usize, f64) {
+    let mut worst = (0, 0.0);
+    for i in 0..n {
+        let square =
+            step[i] * step[i] + step[n + i] * step[n + i] + step[2 * n + i] * step[2 * n + i];
+        if square > worst.1 {
+            worst = (i, square);
+        }
+    }
+    (worst.0, worst.1.sqrt())
+}
+
+/// Proof that no two parts of the rod pass through each other during a step.
+///
+/// Along the straight path from one state to the next, a point of edge i moves relative to a point of edge j by at most the
+/// largest relative displacement of their end points. If that stays below the distance of the two edges at the start, they
+/// cannot meet. Pairs far apart are proved by the displacement limit; all others, also those inside of the contact window,
+/// are measured.
+///
+/// # Errors
+/// [`Rejection::Crossing`] names the first pair of edges that is not proved apart.
+pub(crate) fn certify(
+    from: &RodState,
+    step: &[f64],
+    largest: f64,
+    pairs: &ContactPairs,
+    near: &mut Vec<(u32, u32)>,
+) -> Result<(), Rejection> {
+    let (x, n, n_edges) = (from.vertices(), from.n_vertices(), from.n_edges());
+    let moved = |i: usize| Vector3::new(step[i], step[n + i], step[2 * n + i]);
+    let longest = (0..n_edges)
+        .map(|j| (x[from.edge_end(j)] - x[j]).norm_squared())
+        .fold(0.0, f64::max)
+        .sqrt();
+    let check = |i: usize, j: usize| -> Result<(), Rejection> {
+        let (i1, j1) = (from.edge_end(i), from.edge_end(j));
+        let limit = 2.0 * largest + longest;
+        // the bound by the middles costs no square root of a segment pair
+        let middles = (x[i] + x[i1] - x[j] - x[j1]).norm_squared() * 0.25;
+        if middles > limit * limit {
+            return Ok(());
+        }
+        let (a, b) = ([moved(i), moved(i1)], [moved(j), moved(j1)]);
+        let relative = a
+            .iter()
+            .flat_map(|p| b.iter().map(move |q| (p - q).norm_squared()))
+            .fold(0.0, f64::max)
+            .sqrt();
+        if relative < segment_distance(&x[i], &x[i1], &x[j], &x[j1]) {
+            Ok(())
+        } else {
+            Err(Rejection::Crossing {
+                edges: (i.min(j), i.max(j)),
+            })
+        }
+    };
+    // neighbours along the rod, which the contact list leaves out
+    let joined = from.is_closed() || pairs.is_cyclic();
+    let width =
+        ((pairs.window().outer() / from.rest_length()).ceil() as usize + 1).min(n_edges / 2);
+    for i in 0..n_edges {
+        for k in 2..=width {
+            let j = i + k;
+            if j < n_edges {
+                check(i, j)?;
+            } else if joined {
+                check(i, j - n_edges)?;
+            }
+        }
+    }
+    // strands in reach of each other: edges around each listed pair of vertices
+    if !pairs.vertices_within(2.0 * largest + longest, x, near) {
+        // so coarse a rod that the list is shorter than its edges
+        for i in 0..n_edges {
+            for j in i + 2..n_edges - usize::from(joined && i == 0) {
+                check(i, j)?;
+            }
+        }
+    }
+    for &(a, b) in near.iter() {
+        for i in edges_at(from, a as usize) {
+            for j in edges_at(from, b as usize) {
+                if i != j && from.edge_end(i) != j && from.edge_end(j) != i {
+                    check(i, j)?;
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The edges that meet at a vertex.
+fn edges_at(state: &RodState, i: usize) -> impl Iterator<Item = usize> + '_ {
+    let n_edges = state.n_edges();
+    let before = if state.is_closed() || i > 0 {
+        Some(state.edge_before(i))
+    } else {
+        None
+    };
+    let after = if i < n_edges { Some(i) } else { None };
+    before.into_iter().chain(after)
+}

@@ -1,0 +1,309 @@
+//! The matrix of the linearly implicit steps, η K + η_f C + s H, on the centreline.
+
+use nalgebra::Matrix3;
+use topo_core::{SparseCholesky, SparseError};
+
+use crate::contact::ContactPairs;
+use crate::energy::Stiffness;
+use crate::viscosity::{TwistViscosity, remove_mean};
+use crate::{Chain, RodState};
+
+/// Block matrix of the centreline with a symbolic factor that is kept as long as the pairs in contact are known to it.
+#[derive(Debug, Default)]
+pub(crate) struct NewtonMatrix {
+    solver: Option<SparseCholesky>,
+    blocks: Vec<[usize; 9]>,
+    pairs: Vec<(u32, u32)>,
+    couplings: Vec<(u32, u32, f64)>,
+    fixed: Vec<bool>,
+    floating: bool,
+    chain: Chain,
+    work: Vec<f64>,
+    right: Vec<f64>,
+    pub n_patterns: u64,
+    pub n_factorisations: u64,
+}
+
+/// Pairs a little out of reach that the pattern holds in advance, in h.
+const FORESIGHT: f64 = 0.15;
+
+impl NewtonMatrix {
+    pub(crate) fn new(fixed: Vec<bool>) -> Self {
+        let floating = !fixed.iter().any(|&f| f);
+        Self {
+            fixed,
+            floating,
+            ..Self::default()
+        }
+    }
+
+    pub(crate) fn n_nonzeros(&self) -> usize {
+        self.solver
+            .as_ref()
+            .map_or(0, |s| s.n_nonzeros() + s.n_factor_nonzeros())
+    }
+
+    /// Assembles and factorises at a state; `stiffness` is H, `s` its factor, `couplings` the friction pairs.
+    pub(crate) fn prepare(
+        &mut self,
+        state: &RodState,
+        pairs: &ContactPairs,
+        stiffness: &Stiffness,
+        s: f64,
+        couplings: &[(u32, u32, f64)],
+    ) -> Result<(), SparseError> {
+        let n = state.n_vertices();
+        let known = |list: &[(u32, u32)]| {
+            let mut rest = list.iter();
+            pairs
+                .active()
+                .iter()
+                .all(|p| rest.any(|q| *q == (p.i, p.j)))
+        };
+        // a pattern that has grown much too rich costs more in every factorisation than a new symbolic one
+        let lean = self.pairs.len() <= 2 * pairs.active().len() + n;
+        if self.solver.is_none() || !lean || !known(&self.pairs) {
+            self.build_pattern(state, pairs)?;
+        }
+        self.couplings.clear();
+        self.couplings.extend_from_slice(couplings);
+        self.chain = state.chain();
+        let Some(solver) = self.solver.as_mut() else {
+            return Ok(());
+        };
+        let values = solver.values_mut();
+        values.fill(0.0);
+        let viscous = 1.0 / self.chain.rest_length();
+        let identity = |c: f64| Matrix3::from_diagonal_element(c);
+        let mut add = |block: usize, (a, b): (usize, usize), m: Matrix3<f64>, diagonal: bool| {
+            if self.fixed[a] || self.fixed[b] {
+                return;
+            }
+            for (k, &slot) in self.blocks[block].iter().enumerate() {
+                let (row, column) = (k / 3, k % 3);
+                if !diagonal || row >= column {
+                    values[slot] += m[(row, column)];
+                }
+            }
+        };
+        for i in 0..n {
+            add(i, (i, i), stiffness.diagonal[i] * s, true);
+        }
+        for j in 0..state.n_edges() {
+            let (a, b) = (j, state.edge_end(j));
+            add(a, (a, a), identity(viscous), true);
+            add(b, (b, b), identity(viscous), true);
+            add(
+                n + j,
+                (a, b),
+                stiffness.next[j] * s - identity(viscous),
+                false,
+            );
+        }
+        for (i, far) in second_neighbours(state) {
+            add(2 * n + i, (i, far), stiffness.second[i] * s, false);
+        }
+        let mut position = 0;
+        for (pair, block) in pairs.active().iter().zip(&stiffness.contact) {
+            while self.pairs[position] != (pair.i, pair.j) {
+                position += 1;
+            }
+            add(
+                3 * n + position,
+                (pair.i as usize, pair.j as usize),
+                block * s,
+                false,
+            );
+        }
+        let mut position = 0;
+        for &(i, j, c) in couplings {
+            while self.pairs[position] != (i, j) {
+                position += 1;
+            }
+            let (i, j) = (i as usize, j as usize);
+            add(i, (i, i), identity(c), true);
+            add(j, (j, j), identity(c), true);
+            add(3 * n + position, (i, j), identity(-c), false);
+        }
+        for i in 0..n {
+            let grounded = if self.floating && i == 0 {
+                viscous
+            } else {
+                0.0
+            };
+            let held = if self.fixed[i] { 1.0 } else { grounded };
+            for k in [0, 4, 8] {
+                values[self.blocks[i][k]] += held;
+            }
+        }
+        self.n_factorisations += 1;
+        solver.factor()
+    }
+
+    fn build_pattern(&mut self, state: &RodState, pairs: &ContactPairs) -> Result<(), SparseError> {
+        let n = state.n_vertices();
+        pairs.near(state, FORESIGHT, &mut self.pairs);
+        let mut blocks: Vec<(usize, usize)> = (0..n).map(|i| (i, i)).collect();
+        blocks.extend((0..n).map(|j| {
+            if j < state.n_edges() {
+                (j, state.edge_end(j))
+            } else {
+                (j, j)
+            }
+        }));
+        let mut second = vec![(0, 0); n];
+        for (i, far) in second_neighbours(state) {
+            second[i] = (i, far);
+        }
+        blocks.extend(second);
+        blocks.extend(self.pairs.iter().map(|&(i, j)| (i as usize, j as usize)));
+        let mut pattern = Vec::with_capacity(9 * blocks.len());
+        for &(a, b) in &blocks {
+            for k in 0..9 {
+                pattern.push(((3 * a + k / 3) as u32, (3 * b + k % 3) as u32));
+            }
+        }
+        let solver = SparseCholesky::new(3 * n, &pattern)?;
+        self.blocks.clear();
+        self.blocks.extend(blocks.iter().map(|&(a, b)| {
+            std::array::from_fn(|k| {
+                solver
+                    .slot(3 * a + k / 3, 3 * b + k % 3)
+                    .unwrap_or_default()
+            })
+        }));
+        self.solver = Some(solver);
+        self.n_patterns += 1;
+        Ok(())
+    }
+
+    /// r ← (M + s H)⁻¹ M r on a component-major vector; entries of held vertices stay as they are.
+    pub(crate) fn solve(&mut self, r: &mut [f64]) {
+        let n = self.chain.n_vertices();
+        self.work.clear();
+        self.work.extend_from_slice(&r[..3 * n]);
+        for i in (0..n).filter(|&i| self.fixed[i]) {
+            for k in 0..3 {
+                self.work[k * n + i] = 0.0;
+            }
+        }
+        self.right.clear();
+        self.right.resize(3 * n, 0.0);
+        let viscous = 1.0 / self.chain.rest_length();
+        for j in 0..self.chain.n_edges() {
+            multiply_pair(
+                &self.work,
+                &mut self.right,
+                n,
+                (j, self.chain.edge_end(j)),
+                viscous,
+            );
+        }
+        for &(i, j, c) in &self.couplings {
+            multiply_pair(&self.work, &mut self.right, n, (i as usize, j as usize), c);
+        }
+        if let Some(solver) = self.solver.as_mut() {
+            for i in (0..n).filter(|&i| self.fixed[i]) {
+                for k in 0..3 {
+                    self.right[3 * i + k] = 0.0;
+                }
+            }
+            solver.solve_in_place(&mut self.right, 1);
+        }
+        for i in (0..n).filter(|&i| !self.fixed[i]) {
+            for k in 0..3 {
+                r[k * n + i] = self.right[3 * i + k];
+            }
+        }
+        if self.floating {
+            remove_mean(r, n);
+        }
+    }
+}
+
+/// Adds c (u_a − u_b)² as a matrix: component-major in, vertex-major out.
+#[inline]
+fn multiply_pair(u: &[f64], out: &mut [f64], n: usize, (a, b): (usize, usize), c: f64) {
+    for k in 0..3 {
+        let d = c * (u[k * n + a] - u[k * n + b]);
+        out[3 * a + k] += d;
+        out[3 * b + k] -= d;
+    }
+}
+
+/// Pairs (i, i + 2) along the rod.
+fn second_neighbours(state: &RodState) -> impl Iterator<Item = (usize, usize)> {
+    let (n, closed) = (state.n_vertices(), state.is_closed());
+    (0..if closed { n } else { n - 2 }).map(move |i| (i, (i + 2) % n))
+}
+
+/// The matrix of the linearly implicit steps on the edge rotations, M_θ + s H_θ with H_θ of the twist energy.
+#[derive(Debug)]
+pub(crate) struct NewtonTwist {
+    viscosity: TwistViscosity,
+    chain: Chain,
+    cosine: Vec<f64>,
+    stiffness: f64,
+    held: Vec<bool>,
+    work: Vec<f64>,
+}
+
+impl NewtonTwist {
+    pub(crate) fn new(held: Vec<bool>) -> Self {
+        let viscosity = TwistViscosity::new(held.clone());
+        Self {
+            viscosity,
+            chain: Chain::default(),
+            cosine: Vec::new(),
+            stiffness: 0.0,
+            held,
+            work: Vec::new(),
+        }
+    }
+
+    pub(crate) fn n_factorisations(&self) -> u64 {
+        self.viscosity.n_factorisations()
+    }
+
+    pub(crate) fn prepare(
+        &mut self,
+        chain: Chain,
+        cosine: &[f64],
+        stiffness: f64,
+    ) -> Result<(), SparseError> {
+        self.chain = chain;
+        self.cosine.clear();
+        self.cosine.extend_from_slice(cosine);
+        self.stiffness = stiffness;
+        self.viscosity.prepare(chain, cosine, stiffness)
+    }
+
+    /// w ← (M_θ + s H_θ)⁻¹ M_θ w; entries of held edges stay as they are.
+    pub(crate) fn solve(&mut self, w: &mut [f64]) {
+        let half = 0.5 / self.chain.rest_length();
+        self.work.clear();
+        self.work.extend(
+            w.iter()
+                .zip(&self.held)
+                .map(|(w, &held)| if held { 0.0 } else { *w }),
+        );
+        let right = &mut *w;
+        let given: Vec<(usize, f64)> = self
+            .held
+            .iter()
+            .enumerate()
+            .filter(|h| *h.1)
+            .map(|(j, _)| (j, right[j]))
+            .collect();
+        right.fill(0.0);
+        for i in self.chain.interior() {
+            let (a, b) = (self.chain.edge_before(i), i);
+            right[a] += half * (self.work[a] - self.cosine[i] * self.work[b]);
+            right[b] += half * (self.work[b] - self.cosine[i] * self.work[a]);
+        }
+        given.iter().for_each(|g| right[g.0] = 0.0);
+        self.viscosity
+            .solve(self.chain, &self.cosine, self.stiffness, right);
+        given.iter().for_each(|g| right[g.0] = g.1);
+    }
+}

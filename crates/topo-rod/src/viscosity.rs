@@ -1,0 +1,345 @@
+//! Internal viscosity: what resists motion of the centreline and rotation of the edges.
+//!
+//! The damping is internal, so a translation costs nothing: one vertex is grounded, which for a balanced force is the exact
+//! solution with that vertex at rest, and the mean velocity is then removed.
+
+use topo_core::{SparseCholesky, SparseError};
+
+use crate::Chain;
+use crate::contact::ContactPairs;
+use crate::friction::Friction;
+
+/// Mobility of the centreline: solves [η K + η_f C] v = f for the three components at once.
+///
+/// K is the stiffness matrix of −d²/ds² on the natural arclength, v·K v = Σ_j |v_{j+1} − v_j|²/l_0.
+#[derive(Debug)]
+pub struct CentrelineViscosity {
+    solver: Option<SparseCholesky>,
+    diagonal: Vec<usize>,
+    next: Vec<usize>,
+    rubbing: Vec<(u32, u32, usize)>,
+    fixed: Vec<bool>,
+    grounded: bool,
+    is_current: bool,
+    n_factorisations: u64,
+}
+
+impl CentrelineViscosity {
+    /// For a rod whose vertices marked in `fixed` have a prescribed velocity.
+    pub fn new(fixed: Vec<bool>) -> Self {
+        let grounded = !fixed.iter().any(|&f| f);
+        Self {
+            solver: None,
+            diagonal: Vec::new(),
+            next: Vec::new(),
+            rubbing: Vec::new(),
+            fixed,
+            grounded,
+            is_current: false,
+            n_factorisations: 0,
+        }
+    }
+
+    /// How often a matrix was factorised.
+    pub fn n_factorisations(&self) -> u64 {
+        self.n_factorisations
+    }
+
+    /// Number of stored values of matrix and factor.
+    pub fn n_nonzeros(&self) -> usize {
+        self.solver
+            .as_ref()
+            .map_or(0, |s| s.n_nonzeros() + s.n_factor_nonzeros())
+    }
+
+    /// Whether no vertex is held, so that only velocities up to a common one are defined.
+    pub fn is_floating(&self) -> bool {
+        self.grounded
+    }
+
+    /// Forgets the pattern: the list of pairs has changed.
+    pub fn invalidate_pattern(&mut self) {
+        self.solver = None;
+        self.is_current = false;
+    }
+
+    /// Assembles and factorises the matrix at a chain. Without friction it is constant and factorised once.
+    pub fn prepare(
+        &mut self,
+        chain: Chain,
+        pairs: &ContactPairs,
+        friction: Option<Friction>,
+    ) -> Result<(), SparseError> {
+        if self.solver.is_none() {
+            self.build_pattern(chain, pairs, friction.is_some())?;
+        }
+        if self.is_current && friction.is_none() {
+            return Ok(());
+        }
+        let Some(solver) = self.solver.as_mut() else {
+            return Ok(());
+        };
+        let stiffness = 1.0 / chain.rest_length();
+        let values = solver.values_mut();
+        values.fill(0.0);
+        for j in 0..chain.n_edges() {
+            let (a, b) = (j, chain.edge_end(j));
+            couple(
+                values,
+                &self.fixed,
+                (self.diagonal[a], self.diagonal[b], self.next[j]),
+                (a, b),
+                stiffness,
+            );
+        }
+        if let Some(friction) = friction {
+            // both lists ascend; the active pairs are a part of the candidates
+            let mut slots = self.rubbing.iter();
+            for pair in pairs.active() {
+                let c = friction.coefficient(pair);
+                let Some(&(_, _, slot)) = slots.find(|s| (s.0, s.1) == (pair.i, pair.j)) else {
+                    break;
+                };
+                if c > 0.0 {
+                    let (a, b) = (pair.i as usize, pair.j as usize);
+                    couple(
+                        values,
+                        &self.fixed,
+                        (self.diagonal[a], self.diagonal[b], slot),
+                        (a, b),
+                        c,
+                    );
+                }
+            }
+        }
+        for (i, &fixed) in self.fixed.iter().enumerate() {
+            if fixed {
+                values[self.diagonal[i]] = 1.0;
+            }
+        }
+        if self.grounded {
+            values[self.diagonal[0]] += stiffness;
+        }
+        self.n_factorisations += 1;
+        self.is_current = true;
+        solver.factor()
+    }
+
+    fn build_pattern(
+        &mut self,
+        chain: Chain,
+        pairs: &ContactPairs,
+        rubs: bool,
+    ) -> Result<(), SparseError> {
+        let n = chain.n_vertices();
+        let mut pattern: Vec<(u32, u32)> = (0..chain.n_edges())
+            .map(|j| (j as u32, chain.edge_end(j) as u32))
+            .collect();
+        if rubs {
+            pattern.extend(pairs.candidates());
+        }
+        let solver = SparseCholesky::new(n, &pattern)?;
+        let slot = |i: usize, j: usize| solver.slot(i, j).unwrap_or_default();
+        self.diagonal = (0..n).map(|i| slot(i, i)).collect();
+        self.next = (0..chain.n_edges())
+            .map(|j| slot(j, chain.edge_end(j)))
+            .collect();
+        self.rubbing.clear();
+        if rubs {
+            self.rubbing.extend(
+                pairs
+                    .candidates()
+                    .map(|(i, j)| (i, j, slot(i as usize, j as usize))),
+            );
+        }
+        self.solver = Some(solver);
+        Ok(())
+    }
+
+    /// Turns forces into velocities, component-major 3 × n; entries of held vertices come in as their prescribed velocity.
+    pub fn solve(&mut self, chain: Chain, couplings: &[(u32, u32, f64)], v: &mut [f64]) {
+        let n = chain.n_vertices();
+        if !self.grounded {
+            let held: Vec<[f64; 3]> = (0..n)
+                .map(|i| {
+                    if self.fixed[i] {
+                        [v[i], v[n + i], v[2 * n + i]]
+                    } else {
+                        [0.0; 3]
+                    }
+                })
+                .collect();
+            let stiffness = 1.0 / chain.rest_length();
+            let chain =
+                (0..chain.n_edges()).map(|j| (j as u32, chain.edge_end(j) as u32, stiffness));
+            for (i, j, c) in chain.chain(couplings.iter().copied()) {
+                for (a, b) in [(i as usize, j as usize), (j as usize, i as usize)] {
+                    if self.fixed[a] && !self.fixed[b] {
+                        for k in 0..3 {
+                            v[k * n + b] += c * held[a][k];
+                        }
+                    }
+                }
+            }
+        }
+        if let Some(solver) = self.solver.as_mut() {
+            solver.solve_in_place(v, 3);
+        }
+        if self.grounded {
+            remove_mean(v, n);
+        }
+    }
+}
+
+/// Adds c (u_a − u_b)² to the quadratic form, leaving rows of held vertices out.
+#[inline]
+fn couple(
+    values: &mut [f64],
+    fixed: &[bool],
+    slots: (usize, usize, usize),
+    (a, b): (usize, usize),
+    c: f64,
+) {
+    values[slots.0] += c;
+    values[slots.1] += c;
+    if !fixed[a] && !fixed[b] {
+        values[slots.2] -= c;
+    }
+}
+
+/// Takes the mean of each component out of a component-major vector.
+pub(crate) fn remove_mean(v: &mut [f64], n: usize) {
+    for component in v[..3 * n].chunks_exact_mut(n) {
+        let mean = component.iter().sum::<f64>() / n as f64;
+        component.iter_mut().for_each(|c| *c -= mean);
+    }
+}
+
+/// v·K v of a component-major displacement or velocity.
+pub fn centreline_form(chain: Chain, v: &[f64]) -> f64 {
+    let n = chain.n_vertices();
+    let mut sum = 0.0;
+    for j in 0..chain.n_edges() {
+        let b = chain.edge_end(j);
+        sum += (0..3)
+            .map(|k| (v[k * n + b] - v[k * n + j]).powi(2))
+            .sum::<f64>();
+    }
+    sum / chain.rest_length()
+}
+
+/// w·M_θ w of edge rotations, with c_i the cosine of the turning angle at vertex i.
+///
+/// ```math
+/// w·M_θ w = (η/2l_0) Σ_i |w_i t_i − w_{i−1} t_{i−1}|²
+/// ```
+pub fn twist_form(chain: Chain, cosine: impl Fn(usize) -> f64, w: &[f64]) -> f64 {
+    let sum: f64 = chain
+        .interior()
+        .map(|i| {
+            let (a, b) = (w[chain.edge_before(i)], w[i]);
+            a * a + b * b - 2.0 * cosine(i) * a * b
+        })
+        .sum();
+    sum / (2.0 * chain.rest_length())
+}
+
+/// Twist viscosity, optionally with a multiple of the twist stiffness: solves (M_θ + s H_θ) w = q, a (cyclic) tridiagonal system.
+#[derive(Debug)]
+pub struct TwistViscosity {
+    solver: Option<SparseCholesky>,
+    diagonal: Vec<usize>,
+    next: Vec<usize>,
+    fixed: Vec<bool>,
+    n_factorisations: u64,
+}
+
+impl TwistViscosity {
+    /// For a rod whose edges marked in `fixed` have a prescribed rotation.
+    pub fn new(fixed: Vec<bool>) -> Self {
+        Self {
+            solver: None,
+            diagonal: Vec::new(),
+            next: Vec::new(),
+            fixed,
+            n_factorisations: 0,
+        }
+    }
+
+    /// How often a matrix was factorised.
+    pub fn n_factorisations(&self) -> u64 {
+        self.n_factorisations
+    }
+
+    /// Assembles and factorises M_θ + `stiffness` Σ_i (w_i − w_{i−1})².
+    pub fn prepare(
+        &mut self,
+        chain: Chain,
+        cosine: &[f64],
+        stiffness: f64,
+    ) -> Result<(), SparseError> {
+        if self.solver.is_none() {
+            let n = chain.n_edges();
+            let pattern: Vec<(u32, u32)> = chain
+                .interior()
+                .map(|i| (chain.edge_before(i) as u32, i as u32))
+                .collect();
+            let solver = SparseCholesky::new(n, &pattern)?;
+            self.diagonal = (0..n)
+                .map(|j| solver.slot(j, j).unwrap_or_default())
+                .collect();
+            self.next = (0..chain.n_vertices())
+                .map(|i| {
+                    if chain.interior().contains(&i) {
+                        solver.slot(chain.edge_before(i), i).unwrap_or_default()
+                    } else {
+                        0
+                    }
+                })
+                .collect();
+            self.solver = Some(solver);
+        }
+        let Some(solver) = self.solver.as_mut() else {
+            return Ok(());
+        };
+        let half = 0.5 / chain.rest_length();
+        let values = solver.values_mut();
+        values.fill(0.0);
+        for i in chain.interior() {
+            let (a, b) = (chain.edge_before(i), i);
+            values[self.diagonal[a]] += half + stiffness;
+            values[self.diagonal[b]] += half + stiffness;
+            if !self.fixed[a] && !self.fixed[b] {
+                values[self.next[i]] -= half * cosine[i] + stiffness;
+            }
+        }
+        for (j, &fixed) in self.fixed.iter().enumerate() {
+            // a straight free rod spins about itself at no cost; the torques of its edges sum to zero, so a trace of
+            // resistance fixes the spin at none
+            values[self.diagonal[j]] = if fixed {
+                1.0
+            } else {
+                values[self.diagonal[j]] * (1.0 + 1e-11)
+            };
+        }
+        self.n_factorisations += 1;
+        solver.factor()
+    }
+
+    /// Turns torques into rotation rates; entries of held edges come in as their prescribed rate.
+    pub fn solve(&mut self, chain: Chain, cosine: &[f64], stiffness: f64, w: &mut [f64]) {
+        let half = 0.5 / chain.rest_length();
+        if self.fixed.iter().any(|&f| f) {
+            for i in chain.interior() {
+                for (a, b) in [(chain.edge_before(i), i), (i, chain.edge_before(i))] {
+                    if self.fixed[a] && !self.fixed[b] {
+                        w[b] += (half * cosine[i] + stiffness) * w[a];
+                    }
+                }
+            }
+        }
+        if let Some(solver) = self.solver.as_mut() {
+            solver.solve_in_place(w, 1);
+        }
+    }
+}
