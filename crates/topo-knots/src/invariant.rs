@@ -1,0 +1,121 @@
+//! Knot invariants from coordinates: project, simplify the diagram, then polynomial, determinant and signature.
+
+mod alexander;
+mod diagram;
+mod goeritz;
+mod projection;
+
+use crate::{KnotError, V};
+
+pub(crate) use diagram::Diagram;
+pub(crate) use projection::{check_vertices, fibonacci_directions, least_crossing};
+
+/// Directions tried for the projection with the fewest crossings.
+const N_PROJECTIONS: usize = 30;
+
+/// Invariants of a closed curve.
+///
+/// # Validation
+/// `invariants_of_the_table`, `composite_knots_multiply`.
+#[derive(Debug, Clone, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+pub struct Invariants {
+    /// Coefficients of the Alexander polynomial, symmetric, the first one positive.
+    pub alexander: Vec<i64>,
+    /// Determinant, |Delta(-1)|.
+    pub determinant: u64,
+    /// Signature; -2 for the right-handed trefoil.
+    pub signature: i32,
+}
+
+impl Invariants {
+    /// Invariants of the closed polygon through `vertices`, from its projection with the fewest crossings.
+    ///
+    /// Determinant and signature come from the Goeritz matrix, the polynomial from Fox's derivative of the Wirtinger
+    /// presentation, so that their agreement at t = -1 is a check.
+    ///
+    /// # Errors
+    /// [`KnotError::TooFewVertices`], [`KnotError::NotFinite`], and [`KnotError::Degenerate`] when no projection is in
+    /// general position or the two routes disagree, as they do when the curve runs through itself.
+    ///
+    /// # References
+    /// [alexander1928], [gordon1978]
+    pub fn of(vertices: &[V]) -> Result<Self, KnotError> {
+        check_vertices(vertices, true)?;
+        let mut diagram =
+            least_crossing(vertices, N_PROJECTIONS, 0).ok_or(KnotError::Degenerate)?;
+        diagram.simplify();
+        Self::of_diagram(&diagram).ok_or(KnotError::Degenerate)
+    }
+
+    /// Invariants of a diagram; none if polynomial and Goeritz matrix contradict each other.
+    pub(crate) fn of_diagram(diagram: &Diagram) -> Option<Self> {
+        let alexander = alexander::polynomial(diagram)?;
+        let (determinant, signature) = goeritz::determinant_and_signature(diagram)?;
+        let at_minus_one: i64 = alexander
+            .iter()
+            .enumerate()
+            .map(|(k, c)| if k % 2 == 0 { *c } else { -*c })
+            .sum();
+        (at_minus_one.unsigned_abs() == determinant).then_some(Self {
+            alexander,
+            determinant,
+            signature,
+        })
+    }
+
+    /// The invariants of the mirror image.
+    pub fn mirror(&self) -> Self {
+        Self {
+            signature: -self.signature,
+            ..self.clone()
+        }
+    }
+
+    /// The invariants of the connected sum of two knots: polynomials and determinants multiply, signatures add.
+    pub fn sum(&self, other: &Self) -> Self {
+        let mut alexander = vec![0; self.alexander.len() + other.alexander.len() - 1];
+        for (i, a) in self.alexander.iter().enumerate() {
+            for (j, b) in other.alexander.iter().enumerate() {
+                alexander[i + j] += a * b;
+            }
+        }
+        Self {
+            alexander,
+            determinant: self.determinant * other.determinant,
+            signature: self.signature + other.signature,
+        }
+    }
+
+    /// The polynomial as text, lowest power first, as `1 -1 1`.
+    pub fn alexander_text(&self) -> String {
+        self.alexander
+            .iter()
+            .map(|c| c.to_string())
+            .collect::<Vec<_>>()
+            .join(" ")
+    }
+}
+
+/// Alexander polynomial of the closed polygon through `vertices`: symmetric coefficients, the first one positive.
+///
+/// # Errors
+/// As [`Invariants::of`].
+pub fn alexander_polynomial(vertices: &[V]) -> Result<Vec<i64>, KnotError> {
+    Invariants::of(vertices).map(|found| found.alexander)
+}
+
+/// Determinant |Delta(-1)| of the closed polygon through `vertices`.
+///
+/// # Errors
+/// As [`Invariants::of`].
+pub fn determinant(vertices: &[V]) -> Result<u64, KnotError> {
+    Invariants::of(vertices).map(|found| found.determinant)
+}
+
+/// Signature of the closed polygon through `vertices`; -2 for the right-handed trefoil.
+///
+/// # Errors
+/// As [`Invariants::of`].
+pub fn signature(vertices: &[V]) -> Result<i32, KnotError> {
+    Invariants::of(vertices).map(|found| found.signature)
+}

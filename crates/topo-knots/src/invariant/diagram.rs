@@ -1,0 +1,132 @@
+//! A knot diagram as a signed Gauss code, and the moves that shorten it.
+
+/// One passage of the curve through a crossing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Visit {
+    /// Index of the crossing.
+    pub crossing: u32,
+    /// Whether the curve runs above here.
+    pub over: bool,
+}
+
+/// A diagram: the 2n visits along the curve, and the sign of each of the n crossings.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Diagram {
+    /// Visits in the order of the curve.
+    pub visits: Vec<Visit>,
+    /// +1 where the lower strand crosses the upper one from right to left, else -1.
+    pub signs: Vec<i8>,
+}
+
+impl Diagram {
+    /// Number of crossings.
+    pub fn n_crossings(&self) -> usize {
+        self.signs.len()
+    }
+
+    /// Removes crossings by Reidemeister's first and second move until neither applies.
+    ///
+    /// Two crossings that follow each other on both of their strands bound a bigon in any planar diagram of one
+    /// component, so the code alone tells where the second move applies.
+    pub fn simplify(&mut self) {
+        let mut alive = vec![true; self.signs.len()];
+        let mut place = vec![[0usize; 2]; self.signs.len()];
+        let mut any = false;
+        loop {
+            let n = self.visits.len();
+            if n == 0 {
+                break;
+            }
+            for (k, v) in self.visits.iter().enumerate() {
+                place[v.crossing as usize][usize::from(v.over)] = k;
+            }
+            let mut changed = false;
+            for k in 0..n {
+                let (a, b) = (self.visits[k], self.visits[(k + 1) % n]);
+                let (ca, cb) = (a.crossing as usize, b.crossing as usize);
+                if !alive[ca] || !alive[cb] {
+                    continue;
+                }
+                if ca == cb {
+                    alive[ca] = false;
+                    changed = true;
+                } else if a.over == b.over {
+                    let other = usize::from(!a.over);
+                    let (pa, pb) = (place[ca][other], place[cb][other]);
+                    if (pa + 1) % n == pb || (pb + 1) % n == pa {
+                        alive[ca] = false;
+                        alive[cb] = false;
+                        changed = true;
+                    }
+                }
+            }
+            if !changed {
+                break;
+            }
+            any = true;
+            self.visits.retain(|v| alive[v.crossing as usize]);
+        }
+        if any {
+            self.renumber(&alive);
+        }
+    }
+
+    fn renumber(&mut self, alive: &[bool]) {
+        let mut next = 0;
+        let mut name = vec![0u32; alive.len()];
+        for (c, live) in alive.iter().enumerate() {
+            if *live {
+                name[c] = next;
+                self.signs[next as usize] = self.signs[c];
+                next += 1;
+            }
+        }
+        self.signs.truncate(next as usize);
+        for v in &mut self.visits {
+            v.crossing = name[v.crossing as usize];
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn code(visits: &[(u32, bool)], signs: &[i8]) -> Diagram {
+        Diagram {
+            visits: visits
+                .iter()
+                .map(|&(crossing, over)| Visit { crossing, over })
+                .collect(),
+            signs: signs.to_vec(),
+        }
+    }
+
+    #[test]
+    fn trefoil_stays_and_a_loop_on_it_goes() {
+        let trefoil = [
+            (0, true),
+            (1, false),
+            (2, true),
+            (0, false),
+            (1, true),
+            (2, false),
+        ];
+        let mut plain = code(&trefoil, &[1, 1, 1]);
+        plain.simplify();
+        assert_eq!(plain.n_crossings(), 3);
+        let mut visits = trefoil.to_vec();
+        visits.insert(2, (3, true));
+        visits.insert(3, (3, false));
+        let mut curled = code(&visits, &[1, 1, 1, -1]);
+        curled.simplify();
+        assert_eq!(curled.visits, plain.visits);
+    }
+
+    #[test]
+    fn a_strand_laid_over_another_is_lifted_off() {
+        let mut laid = code(&[(0, true), (1, true), (0, false), (1, false)], &[1, -1]);
+        laid.simplify();
+        assert_eq!(laid.n_crossings(), 0);
+    }
+}

@@ -1,0 +1,137 @@
+//! The table against its own coordinates, and faults in knot files.
+
+use super::*;
+use crate::{thickness, thickness_brute_force, windowed_half_distance};
+
+#[test]
+fn builtin_table_is_complete() {
+    let table = KnotTable::builtin();
+    let names: Vec<&str> = table.names().collect();
+    assert_eq!(
+        names,
+        [
+            "3_1", "4_1", "5_1", "5_2", "6_1", "6_2", "6_3", "7_1", "7_2", "7_3", "7_4", "7_5",
+            "7_6", "7_7"
+        ]
+    );
+    assert_eq!(
+        BUILTIN.files().filter(|f| is_toml(f.path())).count(),
+        table.len()
+    );
+    for knot in table.iter() {
+        assert!(
+            knot.length_over_radius.is_some() && knot.source.is_some(),
+            "{}",
+            knot.name
+        );
+        assert!(
+            knot.name.starts_with(&knot.crossing_number.to_string()),
+            "{}",
+            knot.name
+        );
+    }
+}
+
+#[test]
+fn invariants_of_the_table() {
+    for knot in KnotTable::builtin().iter() {
+        for knot in [knot.clone(), knot.mirror()] {
+            let curve = closed_braid(&knot.braid).expect("a knot");
+            let found = knot.verify(&curve).expect("the invariants of the table");
+            assert_eq!(found, knot.invariants);
+        }
+    }
+}
+
+#[test]
+fn braids_of_the_table_are_legal_tubes() {
+    for knot in KnotTable::builtin().iter() {
+        let curve = closed_braid(&knot.braid).expect("a knot");
+        let exact = thickness_brute_force(&curve);
+        assert!(exact.tau > 1.0, "{}: {exact:?}", knot.name);
+        assert_eq!(thickness(&curve), exact);
+        assert!(windowed_half_distance(&curve, 1.0) > 1.0);
+    }
+}
+
+#[test]
+fn positive_trefoil_is_right_handed() {
+    let table = KnotTable::builtin();
+    let writhe = |name: &str| {
+        closed_braid(&table.get(name).expect("known").braid)
+            .expect("a knot")
+            .writhe()
+    };
+    assert!(writhe("3_1") > 2.0);
+    assert!((writhe("3_1") + writhe("m3_1")).abs() < 1e-9);
+    assert_eq!(table.get("3_1").expect("known").invariants.signature, -2);
+}
+
+#[test]
+fn unknown_names_bring_near_ones() {
+    let error = KnotTable::builtin().get("3-1").expect_err("unknown");
+    let KnotError::UnknownKnot { near, .. } = &error else {
+        panic!("{error}")
+    };
+    assert!(near.contains(&"3_1".to_owned()));
+    assert!(error.to_string().contains("did you mean"));
+}
+
+fn parse(text: &str) -> Result<KnotEntry, KnotError> {
+    KnotEntry::parse(Path::new("x_1.toml"), text, &|_| {
+        Ok("x,y,z\n0,0,0\n1,0,0\n0,1,oops\n".into())
+    })
+}
+
+#[test]
+fn files_with_faults_are_named() {
+    let good = "name = \"x_1\"\ncrossing_number = 3\nchirality = \"chiral\"\nbraid = [1, 1, 1]\n\
+        [invariants]\nalexander = [1, -1, 1]\ndeterminant = 3\nsignature = -2\n";
+    assert!(parse(good).is_ok());
+    for (from, to, key) in [
+        ("\"x_1\"", "\"y_1\"", "name"),
+        ("determinant = 3", "determinant = 5", "determinant"),
+        ("[1, -1, 1]", "[1, -1, 2]", "alexander"),
+        ("signature = -2", "signature = 1", "signature"),
+        ("[1, 1, 1]", "[1, 1]", "braid"),
+        ("[1, 1, 1]", "[]", "braid"),
+        ("\"chiral\"", "\"amphichiral\"", "chirality"),
+        ("\"chiral\"", "\"both\"", "chirality"),
+        ("crossing_number", "crossings", "crossings"),
+        ("braid =", "polygon = \"p.csv\"\nbraid =", "line 4"),
+    ] {
+        let error = parse(&good.replacen(from, to, 1))
+            .expect_err(key)
+            .to_string();
+        assert!(error.contains(key), "{key}: {error}");
+    }
+}
+
+#[test]
+fn a_folder_adds_knots_and_names_bad_files() {
+    let folder = std::env::temp_dir().join(format!("topo-knots-folder-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("folder");
+    let text = "name = \"tre\"\ncrossing_number = 3\nchirality = \"chiral\"\npolygon = \"tre.csv\"\n\
+        [invariants]\nalexander = [1, -1, 1]\ndeterminant = 3\nsignature = -2\n";
+    std::fs::write(folder.join("tre.toml"), text).expect("written");
+    let missing = KnotTable::builtin()
+        .with_folder(&folder)
+        .expect_err("no polygon yet")
+        .to_string();
+    assert!(missing.contains("tre.csv"), "{missing}");
+    let mut rows = "x,y,z\n".to_owned();
+    for x in closed_braid(&[1, 1, 1]).expect("a knot").vertices() {
+        rows += &format!("{},{},{}\n", x.x, x.y, x.z);
+    }
+    std::fs::write(folder.join("tre.csv"), rows).expect("written");
+    let table = KnotTable::builtin().with_folder(&folder).expect("a table");
+    let entry = table.get("tre").expect("added");
+    entry
+        .verify(&entry.start_curve().expect("a curve"))
+        .expect("a trefoil");
+    std::fs::remove_dir_all(&folder).expect("removed");
+    assert!(matches!(
+        table.with_folder(&folder),
+        Err(KnotError::Io { .. })
+    ));
+}

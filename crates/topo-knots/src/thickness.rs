@@ -1,0 +1,196 @@
+//! Thickness of a polygon: the radius of the fattest tube around it.
+
+use topo_core::Polyline;
+
+use crate::V;
+use crate::segment::closest_points;
+
+/// Thickness of a polygon and the two quantities that bound it.
+///
+/// ```math
+/// \tau = \min\left(\mathrm{minRad}, \tfrac12 \mathrm{dcsd}\right), \qquad
+/// \mathrm{minRad} = \min_i \frac{\min(|e_{i-1}|, |e_i|)}{2 \tan(\theta_i / 2)}
+/// ```
+///
+/// Lengths are in the curve's own unit. The self-distance is infinite for curves without a doubly critical pair.
+///
+/// # Validation
+/// `pruned_thickness_is_brute_force`, `circle_is_bounded_by_its_radius`.
+///
+/// # References
+/// [rawdon2003]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Thickness {
+    /// Smallest radius of curvature of the polygon.
+    pub min_rad: f64,
+    /// Smallest doubly critical self-distance.
+    pub dcsd: f64,
+    /// Radius of the fattest tube, min(min_rad, dcsd / 2).
+    pub tau: f64,
+}
+
+impl Thickness {
+    fn new(min_rad: f64, dcsd: f64) -> Self {
+        Self {
+            min_rad,
+            dcsd,
+            tau: min_rad.min(0.5 * dcsd),
+        }
+    }
+}
+
+/// Thickness of a polygon; pairs of edges that cannot beat the best pair so far are skipped.
+pub fn thickness(curve: &Polyline) -> Thickness {
+    Thickness::new(min_rad(curve), self_distance(curve, true))
+}
+
+/// Thickness of a polygon from every pair of edges, O(n^2) exact distances: the certificate of [`thickness`].
+pub fn thickness_brute_force(curve: &Polyline) -> Thickness {
+    Thickness::new(min_rad(curve), self_distance(curve, false))
+}
+
+/// Half the smallest distance between points at least pi `radius` apart along the curve, the other usual reading of
+/// the self-distance: it reaches `radius` exactly when a tube of that radius does not overlap itself.
+pub fn windowed_half_distance(curve: &Polyline, radius: f64) -> f64 {
+    let x = curve.vertices();
+    let n = curve.n_edges();
+    let mut start = Vec::with_capacity(n + 1);
+    start.push(0.0);
+    for i in 0..n {
+        start.push(start[i] + curve.edge(i).norm());
+    }
+    let length = start[n];
+    let mut least = f64::INFINITY;
+    for i in 0..n {
+        for j in i + 2..n {
+            let between = start[j] - start[i + 1];
+            let around = if curve.is_closed() {
+                length - (start[j + 1] - start[i])
+            } else {
+                f64::INFINITY
+            };
+            if between.min(around) >= std::f64::consts::PI * radius {
+                least = least.min(closest_points(&x[i], head(x, i), &x[j], head(x, j)).0);
+            }
+        }
+    }
+    0.5 * least.sqrt()
+}
+
+fn head(x: &[V], edge: usize) -> &V {
+    &x[(edge + 1) % x.len()]
+}
+
+/// Radius of curvature at a vertex with the given edges before and after.
+pub(crate) fn vertex_radius(before: &V, after: &V) -> f64 {
+    let (a, b) = (before.norm(), after.norm());
+    // tan(theta / 2) = |u x v| / (|u| |v| + u . v), without cancellation at small angles.
+    let tangent_of_half = before.cross(after).norm() / (a * b + before.dot(after)).max(0.0);
+    0.5 * a.min(b) / tangent_of_half
+}
+
+fn min_rad(curve: &Polyline) -> f64 {
+    let n = curve.n_edges();
+    let mut least = f64::INFINITY;
+    for i in usize::from(!curve.is_closed())..n {
+        least = least.min(vertex_radius(&curve.edge((i + n - 1) % n), &curve.edge(i)));
+    }
+    least
+}
+
+fn self_distance(curve: &Polyline, prune: bool) -> f64 {
+    let x = curve.vertices();
+    let n = curve.n_edges();
+    let closed = curve.is_closed();
+    let middle: Vec<V> = (0..n).map(|i| 0.5 * (x[i] + head(x, i))).collect();
+    let half: Vec<f64> = (0..n).map(|i| 0.5 * curve.edge(i).norm()).collect();
+    let mut least = f64::INFINITY;
+    for i in 0..n {
+        let last = if closed && i == 0 { n - 1 } else { n };
+        for j in i + 2..last {
+            if prune {
+                let reach = least + half[i] + half[j];
+                if (middle[i] - middle[j]).norm_squared() > reach * reach {
+                    continue;
+                }
+            }
+            let (d2, s, t) = closest_points(&x[i], head(x, i), &x[j], head(x, j));
+            if d2 >= least * least {
+                continue;
+            }
+            let from = x[i] + (head(x, i) - x[i]) * s;
+            let to = x[j] + (head(x, j) - x[j]) * t;
+            let gap = to - from;
+            if is_minimum(curve, i, s, &gap) && is_minimum(curve, j, t, &-gap) {
+                least = d2.sqrt();
+            }
+        }
+    }
+    least
+}
+
+/// Whether the distance to a point `gap` away has a local minimum at parameter `s` of an edge.
+fn is_minimum(curve: &Polyline, edge: usize, s: f64, gap: &V) -> bool {
+    let n = curve.n_edges();
+    let closed = curve.is_closed();
+    let grows = |edge: usize, sense: f64| {
+        let e = curve.edge(edge);
+        sense * e.dot(gap) <= 1e-9 * e.norm() * gap.norm()
+    };
+    if s <= 0.0 {
+        (edge == 0 && !closed) || grows((edge + n - 1) % n, -1.0)
+    } else if s >= 1.0 {
+        (edge + 1 == n && !closed) || grows((edge + 1) % n, 1.0)
+    } else {
+        true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn circle(n: usize, radius: f64) -> Polyline {
+        let vertices = (0..n).map(|k| {
+            let (s, c) = (std::f64::consts::TAU * k as f64 / n as f64).sin_cos();
+            V::new(radius * c, radius * s, 0.0)
+        });
+        Polyline::new(vertices.collect(), true).expect("a circle")
+    }
+
+    #[test]
+    fn circle_is_bounded_by_its_radius() {
+        let n = 60;
+        let found = thickness_brute_force(&circle(n, 2.0));
+        let inscribed = 2.0 * (std::f64::consts::PI / n as f64).cos();
+        assert!((found.min_rad - inscribed).abs() < 1e-12);
+        assert!((found.dcsd - 2.0 * inscribed).abs() < 1e-6, "{found:?}");
+    }
+
+    #[test]
+    fn straight_rod_has_no_bound() {
+        let rod = Polyline::new((0..9).map(|k| V::new(k as f64, 0.0, 0.0)).collect(), false);
+        let found = thickness(&rod.expect("a rod"));
+        assert!(found.tau.is_infinite(), "{found:?}");
+    }
+
+    #[test]
+    fn hairpin_tips_are_a_gap_apart() {
+        let x = [(0.0, 0.0), (4.0, 0.0), (5.0, 0.7), (4.0, 1.4), (0.1, 1.4)];
+        let hairpin = x.iter().map(|&(x, y)| V::new(x, y, 0.0)).collect();
+        let found = thickness(&Polyline::new(hairpin, false).expect("a curve"));
+        assert!((found.dcsd - 1.4).abs() < 1e-12, "{found:?}");
+    }
+
+    proptest! {
+        #[test]
+        fn pruned_thickness_is_brute_force(
+            raw in prop::collection::vec(prop::array::uniform3(-1.0..1.0_f64), 5..40), closed: bool,
+        ) {
+            let curve = Polyline::new(raw.into_iter().map(V::from).collect(), closed);
+            let curve = curve.expect("distinct vertices");
+            prop_assert_eq!(thickness(&curve), thickness_brute_force(&curve));
+        }
+    }
+}

@@ -1,0 +1,147 @@
+//! Tight knots: several starts, a search for the basin at low resolution, then ever finer polygons.
+
+mod certificate;
+mod constraints;
+mod cpu;
+mod kick;
+mod level;
+mod qp;
+mod search;
+mod settings;
+
+pub use certificate::Certificate;
+pub use settings::TightenSettings;
+
+use serde::{Deserialize, Serialize};
+use topo_core::Polyline;
+
+use crate::moebius::relax_moebius;
+use crate::{Invariants, KnotEntry, KnotError, thickness};
+use cpu::CpuClock;
+use level::{Level, tighten_level};
+
+/// Vertices and steps of the descent of the Moebius energy that gives the second start.
+const MOEBIUS_EDGES: usize = 320;
+const MOEBIUS_STEPS: usize = 120;
+
+/// A tight knot with the evidence for it.
+///
+/// # Validation
+/// `easy_knots_are_tight`, `long_all_knots_are_tight`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct TightKnot {
+    /// Name of the knot.
+    pub name: String,
+    /// The curve, scaled to thickness 1.
+    pub curve: Polyline,
+    /// Its length, in units of the tube radius.
+    pub length_over_radius: f64,
+    /// What was checked on the curve itself.
+    pub certificate: Certificate,
+    /// Processor seconds that it took.
+    pub cpu_seconds: f64,
+    /// Matrix factorisations that it took.
+    pub n_factorisations: usize,
+}
+
+/// Centreline of a rod: a tight knot smoothed and resampled.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Centreline {
+    /// Closed polygon of equal edges, in the unit of the tight knot.
+    pub curve: Polyline,
+    /// Its length over its thickness.
+    pub ropelength: f64,
+}
+
+impl TightKnot {
+    /// Centreline of `n_edges` equal edges for a rod.
+    ///
+    /// A tight curve has jumps of curvature, so two passes of the binomial filter (1, 2, 1)/4 come first.
+    ///
+    /// # Errors
+    /// [`KnotError::Setting`] for fewer than 8 edges, [`KnotError::Curve`] if resampling fails.
+    pub fn centreline(&self, n_edges: usize) -> Result<Centreline, KnotError> {
+        if n_edges < 8 {
+            let expected = "a closed rod needs at least 8 edges";
+            return Err(KnotError::Setting { name: "edges", value: n_edges as f64, expected });
+        }
+        let curve = self.curve.smoothed(2)?.resampled(n_edges)?;
+        let ropelength = curve.length() / thickness(&curve).tau;
+        Ok(Centreline { curve, ropelength })
+    }
+}
+
+/// Tightens a knot of the table from the starts that serve it: its curve or closed braid, plain and rounded.
+///
+/// # Errors
+/// As [`tighten`], and [`KnotError::Mismatch`] if the start contradicts the invariants of the entry.
+pub fn tighten_entry(entry: &KnotEntry, settings: &TightenSettings) -> Result<TightKnot, KnotError> {
+    let clock = CpuClock::start();
+    let plain = entry.start_curve()?;
+    entry.verify(&plain)?;
+    let round = relax_moebius(&plain, MOEBIUS_EDGES, MOEBIUS_STEPS)?;
+    let mut tight = tighten(&entry.name, &[plain, round], settings)?;
+    tight.cpu_seconds = clock.seconds();
+    Ok(tight)
+}
+
+/// Tightens a closed curve, given in one or more embeddings of the same knot type; the shortest result wins.
+///
+/// The type is compared after each start, kick and level, so that a curve that passed through itself never wins.
+///
+/// # Errors
+/// [`KnotError::Setting`] for settings out of range, [`KnotError::PassedThroughItself`] when a start differs in type from
+/// the first one or the winner changes its type, [`KnotError::NotTightened`] when no start leads anywhere.
+///
+/// # References
+/// [ashton2011], [rawdon2003]
+pub fn tighten(name: &str, starts: &[Polyline], settings: &TightenSettings) -> Result<TightKnot, KnotError> {
+    let clock = CpuClock::start();
+    settings.check()?;
+    let Some(first) = starts.first() else {
+        return Err(KnotError::NotTightened { knot: name.to_owned(), n_starts: 0, last: "no start given".to_owned() });
+    };
+    let kind = Invariants::of(first.vertices())?;
+    let found = search::search(name, starts, &kind, settings)?;
+    let (mut curve, mut n_factorisations) = (found.curve, found.n_factorisations);
+    let mut converged = false;
+    for per_unit in settings.levels() {
+        let n = ((per_unit * curve.length() / thickness(&curve).tau).round() as usize).max(16);
+        let level = Level {
+            damping: 0.05,
+            curvature_damping: 0.1,
+            tolerance: settings.tolerance,
+            rest: 0.1,
+            max_steps: settings.max_steps,
+        };
+        let finer = tighten_level(&curve.resampled(n)?, &level).ok_or_else(|| KnotError::NotTightened {
+            knot: name.to_owned(),
+            n_starts: starts.len(),
+            last: format!("the quadratic program failed at {n} vertices"),
+        })?;
+        check_type(name, &finer.curve, &kind, "tightening")?;
+        n_factorisations += finer.n_factorisations;
+        converged = finer.converged;
+        curve = finer.curve;
+    }
+    let curve = curve.scaled(1.0 / thickness(&curve).tau)?;
+    let certificate = Certificate::of(&curve, converged)?;
+    Ok(TightKnot {
+        name: name.to_owned(),
+        length_over_radius: curve.length() / certificate.tau(),
+        curve,
+        certificate,
+        cpu_seconds: clock.seconds(),
+        n_factorisations,
+    })
+}
+
+/// Refuses a curve whose invariants are not `kind`.
+fn check_type(name: &str, curve: &Polyline, kind: &Invariants, stage: &'static str) -> Result<(), KnotError> {
+    let found = Invariants::of(curve.vertices())?;
+    if found == *kind {
+        return Ok(());
+    }
+    let found = format!("Alexander polynomial {}, signature {}", found.alexander_text(), found.signature);
+    Err(KnotError::PassedThroughItself { knot: name.to_owned(), stage, found })
+}

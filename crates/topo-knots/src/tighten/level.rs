@@ -1,0 +1,116 @@
+//! Tightening at one resolution: a sequence of quadratic programs.
+
+use topo_core::Polyline;
+
+use super::constraints::{Row, rebuild};
+use super::qp::{self, Hessian};
+use crate::{V, thickness};
+
+/// How to tighten at one resolution.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Level {
+    /// Proximal weight on displacements.
+    pub damping: f64,
+    /// Proximal weight on changes of curvature: without it vertices fold in a limit cycle.
+    pub curvature_damping: f64,
+    /// Stops when the ropelength falls by less than this fraction over a window of steps.
+    pub tolerance: f64,
+    /// A curve whose vertices still want to move further than this is not at rest.
+    pub rest: f64,
+    /// Largest number of steps.
+    pub max_steps: usize,
+}
+
+/// Steps over which the fall of the ropelength is judged.
+const WINDOW: usize = 6;
+/// Largest displacement of a vertex in one step, in units of the thickness: two strands cannot pass each other below 1.
+const LARGEST_STEP: f64 = 0.9;
+
+/// What tightening at one resolution came to.
+#[derive(Debug)]
+pub(crate) struct Outcome {
+    /// Shortest curve met, in units in which the tube radius was about 1.
+    pub curve: Polyline,
+    /// Its length over its thickness.
+    pub ropelength: f64,
+    /// Steps made.
+    pub n_steps: usize,
+    /// Matrix factorisations made.
+    pub n_factorisations: usize,
+    /// Whether the ropelength came to rest before the steps ran out.
+    pub converged: bool,
+}
+
+/// Shortens a closed curve at thickness 1, keeping its number of vertices and its type.
+///
+/// ```math
+/// \min_y \frac{N}{2 L_0} \sum_i |e_i + \Delta y_i|^2 + \frac{\mu h}{2} |y|^2 + \frac{\mu_2}{2 h^3} |D^2 y|^2,
+/// \qquad A y \ge b
+/// ```
+pub(crate) fn tighten_level(start: &Polyline, level: &Level) -> Option<Outcome> {
+    let n = start.n_vertices();
+    let tau = thickness(start).tau;
+    let mut curve = start.scaled(1.0 / tau).ok()?;
+    let mut best = curve.clone();
+    let mut best_ropelength = curve.length();
+    let mut history = vec![best_ropelength];
+    let (mut pairs, mut rows): (Vec<(u32, u32)>, Vec<Row>) = (Vec::new(), Vec::new());
+    let mut gradient = vec![0.0; 3 * n];
+    let mut delta: f64 = 0.5;
+    let mut tau: f64 = 1.0;
+    let (mut n_steps, mut n_factorisations, mut converged) = (0, 0, false);
+    while n_steps < level.max_steps {
+        delta = delta.min(LARGEST_STEP * tau);
+        let length = curve.length();
+        let h = length / n as f64;
+        rebuild(curve.vertices(), delta, &mut pairs, &mut rows);
+        let stretch = Hessian { stencil: [2.0 / h, -1.0 / h, 0.0] };
+        let flat: Vec<f64> = curve.vertices().iter().flat_map(|x| [x.x, x.y, x.z]).collect();
+        stretch.multiply(&flat, &mut gradient);
+        let bend = level.curvature_damping / h.powi(3);
+        let hessian = Hessian {
+            stencil: [
+                stretch.stencil[0] + level.damping * h + 6.0 * bend,
+                stretch.stencil[1] - 4.0 * bend,
+                bend,
+            ],
+        };
+        let gap = 1e-2 * level.tolerance * length;
+        let solution = qp::solve(hessian, &gradient, &rows, gap)?;
+        n_factorisations += solution.n_iterations;
+        n_steps += 1;
+        let largest = solution.y.chunks_exact(3).map(|y| y[0].hypot(y[1]).hypot(y[2])).fold(0.0, f64::max);
+        let alpha = if largest > delta { delta / largest } else { 1.0 };
+        let moved = curve
+            .vertices()
+            .iter()
+            .zip(solution.y.chunks_exact(3))
+            .map(|(x, y)| x + alpha * V::new(y[0], y[1], y[2]));
+        curve = Polyline::new(moved.collect(), true).ok()?;
+        tau = thickness(&curve).tau;
+        let ropelength = curve.length() / tau;
+        tracing::trace!(
+            n_steps,
+            n_rows = rows.len(),
+            largest,
+            delta,
+            ropelength,
+            n_iterations = solution.n_iterations,
+            "step"
+        );
+        if ropelength < best_ropelength {
+            best_ropelength = ropelength;
+            best = curve.clone();
+        }
+        history.push(best_ropelength);
+        delta = (1.5 * largest.min(delta)).clamp(0.03, 0.5);
+        if history.len() > WINDOW {
+            let before = history[history.len() - 1 - WINDOW];
+            if before - best_ropelength < level.tolerance * best_ropelength && largest < level.rest {
+                converged = true;
+                break;
+            }
+        }
+    }
+    Some(Outcome { curve: best, ropelength: best_ropelength, n_steps, n_factorisations, converged })
+}

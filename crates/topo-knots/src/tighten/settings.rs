@@ -1,0 +1,105 @@
+//! How long to search and how fine to tighten.
+
+use serde::{Deserialize, Serialize};
+
+use crate::KnotError;
+
+/// Settings of the tightening.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct TightenSettings {
+    /// Vertices per unit of ropelength at the finest level; coarser levels are halvings of it down to 4.
+    pub per_unit: f64,
+    /// Vertices of the search for the basin.
+    pub search_vertices: usize,
+    /// Random variants of each start besides the start itself.
+    pub n_variants: usize,
+    /// Random kicks to the best curves of the search.
+    pub n_kicks: usize,
+    /// Seed of variants and kicks.
+    pub seed: u64,
+    /// A level ends when the ropelength falls by less than this fraction within a few steps.
+    pub tolerance: f64,
+    /// Largest number of quadratic programs a level.
+    pub max_steps: usize,
+}
+
+impl TightenSettings {
+    /// Four vertices per unit of ropelength: within half a percent of the tight length.
+    pub fn draft() -> Self {
+        Self {
+            per_unit: 4.0,
+            search_vertices: 150,
+            n_variants: 1,
+            n_kicks: 6,
+            seed: 1,
+            tolerance: 2e-4,
+            max_steps: 80,
+        }
+    }
+
+    /// Eight vertices per unit of ropelength: within about a tenth of a percent.
+    pub fn standard() -> Self {
+        Self { per_unit: 8.0, tolerance: 1e-4, ..Self::draft() }
+    }
+
+    /// Sixteen vertices per unit of ropelength and a longer search.
+    pub fn fine() -> Self {
+        Self { per_unit: 16.0, n_variants: 2, n_kicks: 12, tolerance: 2e-5, max_steps: 200, ..Self::draft() }
+    }
+
+    /// Numbers of vertices per unit of ropelength, coarse to fine.
+    pub(crate) fn levels(&self) -> Vec<f64> {
+        let mut levels = vec![self.per_unit];
+        while levels[0] >= 8.0 {
+            levels.insert(0, 0.5 * levels[0]);
+        }
+        levels
+    }
+
+    /// Refuses settings out of range.
+    ///
+    /// # Errors
+    /// [`KnotError::Setting`] naming the setting, its value and its range.
+    pub fn check(&self) -> Result<(), KnotError> {
+        let checks = [
+            ("per_unit", self.per_unit, 1.0, 64.0, "expected 1 to 64 vertices per unit of ropelength"),
+            ("search_vertices", self.search_vertices as f64, 32.0, 4096.0, "expected 32 to 4096"),
+            ("n_variants", self.n_variants as f64, 0.0, 1000.0, "expected at most 1000"),
+            ("n_kicks", self.n_kicks as f64, 0.0, 10_000.0, "expected at most 10000"),
+            ("tolerance", self.tolerance, 1e-9, 1e-2, "expected 1e-9 to 1e-2"),
+            ("max_steps", self.max_steps as f64, 1.0, 100_000.0, "expected 1 to 100000"),
+        ];
+        for (name, value, least, most, expected) in checks {
+            if !(least..=most).contains(&value) {
+                return Err(KnotError::Setting { name, value, expected });
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Default for TightenSettings {
+    fn default() -> Self {
+        Self::standard()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn presets_pass_and_levels_double() {
+        for preset in [TightenSettings::draft(), TightenSettings::standard(), TightenSettings::fine()] {
+            preset.check().expect("in range");
+        }
+        assert_eq!(TightenSettings::draft().levels(), [4.0]);
+        assert_eq!(TightenSettings::fine().levels(), [4.0, 8.0, 16.0]);
+    }
+
+    #[test]
+    fn settings_out_of_range_are_named() {
+        let bad = TightenSettings { tolerance: f64::NAN, ..TightenSettings::draft() };
+        assert!(matches!(bad.check(), Err(KnotError::Setting { name: "tolerance", .. })));
+    }
+}
