@@ -2,6 +2,7 @@
 
 mod braid;
 mod error;
+mod identify;
 mod invariant;
 mod moebius;
 mod segment;
@@ -12,6 +13,7 @@ mod tighten;
 
 pub use braid::{closed_braid, n_components};
 pub use error::KnotError;
+pub use identify::{Handedness, KnotType, OpenKnotType, identify, identify_open};
 pub use invariant::{Invariants, alexander_polynomial, determinant, signature};
 pub use moebius::relax_moebius;
 pub use start_file::StartCurve;

@@ -112,6 +112,7 @@ pub fn tighten(name: &str, starts: &[Polyline], settings: &TightenSettings) -> R
             curvature_damping: 0.1,
             tolerance: settings.tolerance,
             rest: 0.1,
+            enough: 0.0,
             max_steps: settings.max_steps,
         };
         let finer = tighten_level(&curve.resampled(n)?, &level).ok_or_else(|| KnotError::NotTightened {

@@ -17,6 +17,8 @@ pub(crate) struct Level {
     pub tolerance: f64,
     /// A curve whose vertices still want to move further than this is not at rest.
     pub rest: f64,
+    /// Stops once the ropelength is below this.
+    pub enough: f64,
     /// Largest number of steps.
     pub max_steps: usize,
 }
@@ -101,6 +103,9 @@ pub(crate) fn tighten_level(start: &Polyline, level: &Level) -> Option<Outcome> 
         if ropelength < best_ropelength {
             best_ropelength = ropelength;
             best = curve.clone();
+        }
+        if best_ropelength < level.enough {
+            break;
         }
         history.push(best_ropelength);
         delta = (1.5 * largest.min(delta)).clamp(0.03, 0.5);

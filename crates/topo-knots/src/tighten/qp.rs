@@ -68,7 +68,7 @@ pub(crate) fn solve(hessian: Hessian, gradient: &[f64], rows: &[Row], tolerance:
     let mut correction = vec![0.0; m];
     let scale = gradient.iter().fold(1e-300_f64, |a, g| a.max(g.abs()));
     let mut n_iterations = 0;
-    let mut converged = false;
+    let mut converged;
     loop {
         hessian.multiply(&y, &mut dual_residual);
         dual_residual.iter_mut().zip(gradient).for_each(|(r, g)| *r += g);

@@ -13,7 +13,7 @@ use crate::thickness;
 /// Amplitude of kicks in units of the thickness; below 1 strands cannot pass each other.
 const KICK: f64 = 0.7;
 /// Vertices per unit of ropelength that a loose start needs to bend freely.
-const LOOSE_PER_UNIT: f64 = 1.25;
+const LOOSE_PER_UNIT: f64 = 0.8;
 /// Curves that share the kicks at first.
 const N_FINALISTS: usize = 2;
 
@@ -70,7 +70,7 @@ pub(crate) fn search(
 }
 
 fn level() -> Level {
-    Level { damping: 0.02, curvature_damping: 0.1, tolerance: 1e-3, rest: 0.3, max_steps: 100 }
+    Level { damping: 0.02, curvature_damping: 0.1, tolerance: 1e-3, rest: 0.3, enough: 0.0, max_steps: 100 }
 }
 
 /// Tightens a start that may be several times too long: first with as many vertices as it needs to bend.
@@ -80,7 +80,7 @@ fn tighten_loose(start: &Polyline, settings: &TightenSettings) -> Option<Outcome
     let mut curve = start.clone();
     let mut n_factorisations = 0;
     if n_loose > n {
-        let loose = Level { tolerance: 2e-2, max_steps: 60, ..level() };
+        let loose = Level { tolerance: 2e-2, max_steps: 60, enough: n as f64, ..level() };
         let outcome = tighten_level(&start.resampled(n_loose).ok()?, &loose)?;
         n_factorisations = outcome.n_factorisations;
         curve = outcome.curve;
