@@ -136,6 +136,9 @@ pub enum KnotError {
         /// Reason of the last failure.
         last: String,
     },
+    /// A file of the cache could not be written.
+    #[error(transparent)]
+    File(#[from] topo_core::FileError),
     /// The curve is refused by the geometry.
     #[error(transparent)]
     Curve(#[from] topo_core::CurveError),

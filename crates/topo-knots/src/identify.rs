@@ -50,7 +50,11 @@ impl KnotType {
         Self {
             names: vec!["0_1".to_owned()],
             handedness: Handedness::Amphichiral,
-            invariants: Invariants { alexander: vec![1], determinant: 1, signature: 0 },
+            invariants: Invariants {
+                alexander: vec![1],
+                determinant: 1,
+                signature: 0,
+            },
         }
     }
 
@@ -82,7 +86,7 @@ impl KnotType {
 /// `names_the_table_and_its_mirrors`, `a_curve_passed_through_itself_is_caught`.
 ///
 /// # References
-/// [koniaris1991]
+/// `koniaris1991`
 pub fn identify(vertices: &[V], table: &KnotTable) -> Result<KnotType, KnotError> {
     check_vertices(vertices, true)?;
     let mut reducer = Reducer::default();
@@ -116,7 +120,10 @@ fn diagram(reducer: &mut Reducer) -> Result<Option<Diagram>, KnotError> {
 
 fn look_up(found: Invariants, table: &KnotTable) -> KnotType {
     if found.alexander == [1] {
-        return KnotType { invariants: found, ..KnotType::unknot() };
+        return KnotType {
+            invariants: found,
+            ..KnotType::unknot()
+        };
     }
     let mut names = Vec::new();
     let mut handedness = Handedness::Undecided;
@@ -131,7 +138,11 @@ fn look_up(found: Invariants, table: &KnotTable) -> KnotType {
     if names.is_empty() {
         sums(&found, table, &mut names);
     }
-    KnotType { names, handedness, invariants: found }
+    KnotType {
+        names,
+        handedness,
+        invariants: found,
+    }
 }
 
 fn compare(found: &Invariants, knot: &KnotEntry) -> Option<Handedness> {

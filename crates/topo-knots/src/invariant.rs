@@ -38,7 +38,7 @@ impl Invariants {
     /// general position or the two routes disagree, as they do when the curve runs through itself.
     ///
     /// # References
-    /// [alexander1928], [gordon1978]
+    /// `alexander1928`, `gordon1978`
     pub fn of(vertices: &[V]) -> Result<Self, KnotError> {
         check_vertices(vertices, true)?;
         let mut diagram =

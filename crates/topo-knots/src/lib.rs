@@ -1,7 +1,14 @@
 //! Knot table, braid closures, tight shapes, and knot types from coordinates.
+//!
+//! Reading order: `table` (what is known of a knot), `braid`, `start_file` and `moebius` (curves to start from),
+//! `thickness`, `tighten` (from a loose curve to a tight one, with its certificate), `ideal` (the same, kept on disk),
+//! `invariant` (polynomial, determinant and signature from coordinates) and `identify` (names from coordinates).
+//!
+//! Lengths of tight knots are in units of the tube radius: [`TightKnot::length_over_radius`].
 
 mod braid;
 mod error;
+mod ideal;
 mod identify;
 mod invariant;
 mod moebius;
@@ -13,6 +20,7 @@ mod tighten;
 
 pub use braid::{closed_braid, n_components};
 pub use error::KnotError;
+pub use ideal::ideal;
 pub use identify::{Handedness, KnotType, OpenKnotType, identify, identify_open};
 pub use invariant::{Invariants, alexander_polynomial, determinant, signature};
 pub use moebius::relax_moebius;
@@ -21,5 +29,5 @@ pub use table::{Chirality, KnotEntry, KnotTable};
 pub use thickness::{Thickness, thickness, thickness_brute_force, windowed_half_distance};
 pub use tighten::{Centreline, Certificate, TightKnot, TightenSettings, tighten, tighten_entry};
 
-/// A point or vector in space, in units of the tube radius where a tube is meant.
+/// A point or vector in space.
 pub type V = nalgebra::Vector3<f64>;

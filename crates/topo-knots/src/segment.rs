@@ -5,7 +5,7 @@ use crate::V;
 /// Squared distance of the segments a-b and c-d and the parameters of the closest points, each in [0, 1].
 ///
 /// # References
-/// [ericson2005]
+/// `ericson2005`
 pub(crate) fn closest_points(a: &V, b: &V, c: &V, d: &V) -> (f64, f64, f64) {
     let (u, v, w) = (b - a, d - c, a - c);
     let (uu, uv, vv) = (u.norm_squared(), u.dot(&v), v.norm_squared());

@@ -18,7 +18,7 @@ use crate::segment::closest_points;
 /// `pruned_thickness_is_brute_force`, `circle_is_bounded_by_its_radius`.
 ///
 /// # References
-/// [rawdon2003]
+/// `rawdon2003`
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Thickness {
     /// Smallest radius of curvature of the polygon.

@@ -63,7 +63,11 @@ impl TightKnot {
     pub fn centreline(&self, n_edges: usize) -> Result<Centreline, KnotError> {
         if n_edges < 8 {
             let expected = "a closed rod needs at least 8 edges";
-            return Err(KnotError::Setting { name: "edges", value: n_edges as f64, expected });
+            return Err(KnotError::Setting {
+                name: "edges",
+                value: n_edges as f64,
+                expected,
+            });
         }
         let curve = self.curve.smoothed(2)?.resampled(n_edges)?;
         let ropelength = curve.length() / thickness(&curve).tau;
@@ -75,7 +79,10 @@ impl TightKnot {
 ///
 /// # Errors
 /// As [`tighten`], and [`KnotError::Mismatch`] if the start contradicts the invariants of the entry.
-pub fn tighten_entry(entry: &KnotEntry, settings: &TightenSettings) -> Result<TightKnot, KnotError> {
+pub fn tighten_entry(
+    entry: &KnotEntry,
+    settings: &TightenSettings,
+) -> Result<TightKnot, KnotError> {
     let clock = CpuClock::start();
     let plain = entry.start_curve()?;
     entry.verify(&plain)?;
@@ -94,12 +101,20 @@ pub fn tighten_entry(entry: &KnotEntry, settings: &TightenSettings) -> Result<Ti
 /// the first one or the winner changes its type, [`KnotError::NotTightened`] when no start leads anywhere.
 ///
 /// # References
-/// [ashton2011], [rawdon2003]
-pub fn tighten(name: &str, starts: &[Polyline], settings: &TightenSettings) -> Result<TightKnot, KnotError> {
+/// `ashton2011`, `rawdon2003`
+pub fn tighten(
+    name: &str,
+    starts: &[Polyline],
+    settings: &TightenSettings,
+) -> Result<TightKnot, KnotError> {
     let clock = CpuClock::start();
     settings.check()?;
     let Some(first) = starts.first() else {
-        return Err(KnotError::NotTightened { knot: name.to_owned(), n_starts: 0, last: "no start given".to_owned() });
+        return Err(KnotError::NotTightened {
+            knot: name.to_owned(),
+            n_starts: 0,
+            last: "no start given".to_owned(),
+        });
     };
     let kind = Invariants::of(first.vertices())?;
     let found = search::search(name, starts, &kind, settings)?;
@@ -115,11 +130,12 @@ pub fn tighten(name: &str, starts: &[Polyline], settings: &TightenSettings) -> R
             enough: 0.0,
             max_steps: settings.max_steps,
         };
-        let finer = tighten_level(&curve.resampled(n)?, &level).ok_or_else(|| KnotError::NotTightened {
-            knot: name.to_owned(),
-            n_starts: starts.len(),
-            last: format!("the quadratic program failed at {n} vertices"),
-        })?;
+        let finer =
+            tighten_level(&curve.resampled(n)?, &level).ok_or_else(|| KnotError::NotTightened {
+                knot: name.to_owned(),
+                n_starts: starts.len(),
+                last: format!("the quadratic program failed at {n} vertices"),
+            })?;
         check_type(name, &finer.curve, &kind, "tightening")?;
         n_factorisations += finer.n_factorisations;
         converged = finer.converged;
@@ -138,11 +154,24 @@ pub fn tighten(name: &str, starts: &[Polyline], settings: &TightenSettings) -> R
 }
 
 /// Refuses a curve whose invariants are not `kind`.
-fn check_type(name: &str, curve: &Polyline, kind: &Invariants, stage: &'static str) -> Result<(), KnotError> {
+fn check_type(
+    name: &str,
+    curve: &Polyline,
+    kind: &Invariants,
+    stage: &'static str,
+) -> Result<(), KnotError> {
     let found = Invariants::of(curve.vertices())?;
     if found == *kind {
         return Ok(());
     }
-    let found = format!("Alexander polynomial {}, signature {}", found.alexander_text(), found.signature);
-    Err(KnotError::PassedThroughItself { knot: name.to_owned(), stage, found })
+    let found = format!(
+        "Alexander polynomial {}, signature {}",
+        found.alexander_text(),
+        found.signature
+    );
+    Err(KnotError::PassedThroughItself {
+        knot: name.to_owned(),
+        stage,
+        found,
+    })
 }

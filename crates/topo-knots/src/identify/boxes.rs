@@ -64,7 +64,13 @@ impl Level {
     }
 
     fn clear(&mut self, i: usize) {
-        self.set(i, &Aabb { low: [f32::INFINITY; 3], high: [f32::NEG_INFINITY; 3] });
+        self.set(
+            i,
+            &Aabb {
+                low: [f32::INFINITY; 3],
+                high: [f32::NEG_INFINITY; 3],
+            },
+        );
     }
 
     /// Which of the eight boxes from `first` on overlap `b`, as bits.
@@ -140,8 +146,9 @@ mod tests {
             let s = k as f64;
             V::new((1.7 * s).sin(), (2.3 * s).cos(), (0.9 * s).sin())
         };
-        let boxes: Vec<Aabb> =
-            (0..83).map(|k| Aabb::around(&[&point(k), &point(k + 1)], 0.0)).collect();
+        let boxes: Vec<Aabb> = (0..83)
+            .map(|k| Aabb::around(&[&point(k), &point(k + 1)], 0.0))
+            .collect();
         let mut all = EdgeBoxes::default();
         all.reset(boxes.len());
         boxes.iter().enumerate().for_each(|(k, b)| all.set(k, b));
@@ -152,8 +159,11 @@ mod tests {
                 found.push(k);
                 false
             });
-            let overlap = |b: &Aabb| (0..3).all(|k| b.low[k] <= query.high[k] && b.high[k] >= query.low[k]);
-            let expected: Vec<usize> = (0..boxes.len()).filter(|&k| k != 11 && overlap(&boxes[k])).collect();
+            let overlap =
+                |b: &Aabb| (0..3).all(|k| b.low[k] <= query.high[k] && b.high[k] >= query.low[k]);
+            let expected: Vec<usize> = (0..boxes.len())
+                .filter(|&k| k != 11 && overlap(&boxes[k]))
+                .collect();
             assert_eq!(found, expected);
         }
     }

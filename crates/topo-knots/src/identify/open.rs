@@ -4,8 +4,8 @@ use std::f64::consts::PI;
 
 use serde::{Deserialize, Serialize};
 
-use super::reduce::{Ray, Reducer};
 use super::classify;
+use super::reduce::{Ray, Reducer};
 use crate::invariant::{check_vertices, fibonacci_directions};
 use crate::{KnotError, KnotTable, V};
 
@@ -29,7 +29,10 @@ impl OpenKnotType {
 
     /// Share of the closures that have the given label.
     pub fn probability(&self, label: &str) -> f64 {
-        self.distribution.iter().find(|(known, _)| known == label).map_or(0.0, |(_, share)| *share)
+        self.distribution
+            .iter()
+            .find(|(known, _)| known == label)
+            .map_or(0.0, |(_, share)| *share)
     }
 }
 
@@ -45,7 +48,7 @@ impl OpenKnotType {
 /// `common_reduction_changes_no_closure`, `an_open_knot_is_dominated_by_its_type`.
 ///
 /// # References
-/// [tubiana2011], [dabrowski2021]
+/// `tubiana2011`, `dabrowski2021`
 pub fn identify_open(
     vertices: &[V],
     n_closures: usize,
@@ -55,14 +58,20 @@ pub fn identify_open(
     check_vertices(vertices, false)?;
     if n_closures == 0 {
         let expected = "at least one closure is needed, 32 is usual";
-        return Err(KnotError::Setting { name: "n_closures", value: 0.0, expected });
+        return Err(KnotError::Setting {
+            name: "n_closures",
+            value: 0.0,
+            expected,
+        });
     }
     let far = far_points(vertices, n_closures, seed);
     let mut reducer = Reducer::default();
     reducer.load(vertices, false);
     if let [first, .., last] = reducer.x[..] {
-        let rays: Vec<Ray> =
-            far.iter().flat_map(|p| [Ray::new(first, *p), Ray::new(last, *p)]).collect();
+        let rays: Vec<Ray> = far
+            .iter()
+            .flat_map(|p| [Ray::new(first, *p), Ray::new(last, *p)])
+            .collect();
         reducer.reduce(false, &rays);
     }
     let chain = std::mem::take(&mut reducer.x);
@@ -76,11 +85,19 @@ pub fn identify_open(
     }
     counts.sort_by(|a, b| b.1.cmp(&a.1).then_with(|| a.0.cmp(&b.0)));
     let share = |(label, count)| (label, count as f64 / n_closures as f64);
-    Ok(OpenKnotType { distribution: counts.into_iter().map(share).collect(), n_closures })
+    Ok(OpenKnotType {
+        distribution: counts.into_iter().map(share).collect(),
+        n_closures,
+    })
 }
 
 /// Label of the chain closed through one far point.
-fn close(chain: &[V], point: V, reducer: &mut Reducer, table: &KnotTable) -> Result<String, KnotError> {
+fn close(
+    chain: &[V],
+    point: V,
+    reducer: &mut Reducer,
+    table: &KnotTable,
+) -> Result<String, KnotError> {
     // Not as a closed chain: ends that coincide must both stay, the far point lies between them.
     reducer.load(chain, false);
     reducer.x.push(point);
@@ -89,8 +106,13 @@ fn close(chain: &[V], point: V, reducer: &mut Reducer, table: &KnotTable) -> Res
 
 pub(super) fn far_points(vertices: &[V], n: usize, seed: u64) -> Vec<V> {
     let centre = vertices.iter().sum::<V>() / vertices.len() as f64;
-    let radius = vertices.iter().map(|x| (x - centre).norm()).fold(0.0, f64::max);
+    let radius = vertices
+        .iter()
+        .map(|x| (x - centre).norm())
+        .fold(0.0, f64::max);
     // An irrational offset keeps rays out of the planes that symmetric curves lie in.
     let offset = V::new(1e-3, PI * 1e-4, -2e-4) * radius;
-    fibonacci_directions(n, seed).map(|d| centre + offset + FAR * radius.max(f64::MIN_POSITIVE) * d).collect()
+    fibonacci_directions(n, seed)
+        .map(|d| centre + offset + FAR * radius.max(f64::MIN_POSITIVE) * d)
+        .collect()
 }

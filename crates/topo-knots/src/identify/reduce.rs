@@ -17,7 +17,11 @@ pub(crate) struct Ray {
 impl Ray {
     /// The segment between two distinct points.
     pub fn new(from: V, to: V) -> Self {
-        Self { from, to, direction: (to - from).normalize() }
+        Self {
+            from,
+            to,
+            direction: (to - from).normalize(),
+        }
     }
 }
 
@@ -29,7 +33,7 @@ const REMOVED: u32 = u32::MAX;
 /// Reduces chains by the moves of Koniaris and Muthukumar; keeps its buffers between calls.
 ///
 /// # References
-/// [koniaris1991], [reidemeister1927]
+/// `koniaris1991`, `reidemeister1927`
 #[derive(Debug, Default)]
 pub(crate) struct Reducer {
     /// The chain; after a reduction, what is left of it.
@@ -64,7 +68,11 @@ impl Reducer {
         let least = if closed { LEAST_CLOSED } else { 3 };
         let mut n_idle = 0;
         while self.x.len() >= least && n_idle < 2 {
-            n_idle = if self.pass(closed, rays, pad) { 0 } else { n_idle + 1 };
+            n_idle = if self.pass(closed, rays, pad) {
+                0
+            } else {
+                n_idle + 1
+            };
             // The first vertex of a pass stays; a closed chain starts elsewhere next time.
             if closed {
                 self.x.rotate_left(1);
@@ -80,7 +88,8 @@ impl Reducer {
         let n_edges = if closed { n } else { n - 1 };
         self.boxes.reset(n_edges);
         self.next.clear();
-        self.next.extend((1..=n as u32).map(|i| if i == n as u32 { 0 } else { i }));
+        self.next
+            .extend((1..=n as u32).map(|i| if i == n as u32 { 0 } else { i }));
         for i in 0..n_edges {
             let b = Aabb::around(&[&self.x[i], &self.x[self.next[i] as usize]], pad);
             self.boxes.set(i, &b);
@@ -129,11 +138,18 @@ impl Reducer {
     fn is_free(&mut self, [a, b, c]: [usize; 3], before: usize, pad: f32, rays: &[Ray]) -> bool {
         self.n_triangles += 1;
         let (x, next) = (&self.x, &self.next);
-        let triangle = Triangle { a: x[a], b: x[b], c: x[c] };
+        let triangle = Triangle {
+            a: x[a],
+            b: x[b],
+            c: x[c],
+        };
         let bounds = Aabb::around(&[&triangle.a, &triangle.b, &triangle.c], pad);
         let hit = self.boxes.any(&bounds, |edge| {
             // Edges that share a corner can only touch it there.
-            edge != a && edge != b && edge != c && edge != before
+            edge != a
+                && edge != b
+                && edge != c
+                && edge != before
                 && triangle.is_pierced(&x[edge], &x[next[edge] as usize])
         });
         if hit {
@@ -149,7 +165,8 @@ impl Reducer {
             let along = to.dot(&ray.direction);
             let ahead = along.max(0.0);
             to.norm_squared() - ahead * (2.0 * along - ahead) <= reach * (1.0 + 1e-9)
-                && ray.from != triangle.a && ray.from != triangle.c
+                && ray.from != triangle.a
+                && ray.from != triangle.c
                 && triangle.is_pierced(&ray.from, &ray.to)
         })
     }
@@ -195,8 +212,18 @@ mod tests {
             let curve = closed_braid(&knot.braid).expect("a knot");
             reducer.load(curve.vertices(), true);
             reducer.reduce(true, &[]);
-            assert!(reducer.x.len() < 40, "{}: {} vertices left", knot.name, reducer.x.len());
-            assert_eq!(Invariants::of(&reducer.x).expect("a knot"), knot.invariants, "{}", knot.name);
+            assert!(
+                reducer.x.len() < 40,
+                "{}: {} vertices left",
+                knot.name,
+                reducer.x.len()
+            );
+            assert_eq!(
+                Invariants::of(&reducer.x).expect("a knot"),
+                knot.invariants,
+                "{}",
+                knot.name
+            );
         }
     }
 
@@ -207,8 +234,10 @@ mod tests {
         reducer.load(&rod, false);
         reducer.reduce(false, &[]);
         assert_eq!(reducer.x, [rod[0], rod[199]]);
-        let circle: Vec<V> = (0..200).map(|k| (0.01 * std::f64::consts::PI * k as f64).sin_cos())
-            .map(|(s, c)| V::new(c, s, 0.3 * s * c)).collect();
+        let circle: Vec<V> = (0..200)
+            .map(|k| (0.01 * std::f64::consts::PI * k as f64).sin_cos())
+            .map(|(s, c)| V::new(c, s, 0.3 * s * c))
+            .collect();
         reducer.load(&circle, true);
         reducer.reduce(true, &[]);
         assert!(reducer.x.len() < LEAST_CLOSED);
@@ -216,7 +245,11 @@ mod tests {
 
     #[test]
     fn a_ray_through_a_loop_keeps_it() {
-        let bow = [V::new(0.0, 0.0, 0.0), V::new(1.0, 2.0, 0.0), V::new(2.0, 0.0, 0.0)];
+        let bow = [
+            V::new(0.0, 0.0, 0.0),
+            V::new(1.0, 2.0, 0.0),
+            V::new(2.0, 0.0, 0.0),
+        ];
         let through = Ray::new(V::new(1.0, 0.7, -1.0), V::new(1.0, 0.7, 50.0));
         let beside = Ray::new(V::new(1.0, 2.7, -1.0), V::new(1.0, 2.7, 50.0));
         let mut reducer = Reducer::default();

@@ -50,14 +50,31 @@ impl Certificate {
         let count = |guard| rows.iter().filter(|row| row.guard == guard).count();
         let (n_struts, n_kinks) = (count(Guard::Strut), count(Guard::Kink));
         let h = curve.length() / curve.n_edges() as f64;
-        let flat: Vec<f64> = curve.vertices().iter().flat_map(|x| [x.x, x.y, x.z]).collect();
+        let flat: Vec<f64> = curve
+            .vertices()
+            .iter()
+            .flat_map(|x| [x.x, x.y, x.z])
+            .collect();
         let mut tension = vec![0.0; flat.len()];
-        Hessian { stencil: [2.0 / h, -1.0 / h, 0.0] }.multiply(&flat, &mut tension);
+        Hessian {
+            stencil: [2.0 / h, -1.0 / h, 0.0],
+        }
+        .multiply(&flat, &mut tension);
         rows.iter_mut().for_each(|row| row.bound = 0.0);
         let size: f64 = tension.iter().map(|t| t * t).sum();
         // The displacement that shortens fastest without loosening a contact is the unbalanced part of the tension.
-        let residual = qp::solve(Hessian { stencil: [1.0, 0.0, 0.0] }, &tension, &rows, 1e-6 * size)
-            .map_or(1.0, |s| (s.y.iter().map(|y| y * y).sum::<f64>() / size).sqrt());
+        let residual = qp::solve(
+            Hessian {
+                stencil: [1.0, 0.0, 0.0],
+            },
+            &tension,
+            &rows,
+            1e-6 * size,
+        )
+        .filter(|s| s.converged)
+        .map_or(1.0, |s| {
+            (s.y.iter().map(|y| y * y).sum::<f64>() / size).sqrt()
+        });
         Ok(Self {
             thickness_minrad: exact.min_rad,
             thickness_dcsd: 0.5 * exact.dcsd,

@@ -2,6 +2,8 @@
 
 use std::f64::consts::PI;
 
+use topo_rod::contact::close_pairs;
+
 use crate::V;
 use crate::segment::closest_points;
 use crate::thickness::vertex_radius;
@@ -89,7 +91,12 @@ pub(crate) fn rebuild(x: &[V], delta: f64, pairs: &mut Vec<(u32, u32)>, rows: &m
         rows.push(Row {
             guard: Guard::Strut,
             vertices: [i as u32, next(i) as u32, j as u32, next(j) as u32],
-            gradients: [normal * (1.0 - s), normal * s, normal * (t - 1.0), normal * -t],
+            gradients: [
+                normal * (1.0 - s),
+                normal * s,
+                normal * (t - 1.0),
+                normal * -t,
+            ],
             bound: 2.0 - distance,
         });
     }
@@ -128,32 +135,6 @@ fn radius_gradient(a: &V, b: &V) -> (V, V) {
     (da, db)
 }
 
-/// All pairs i < j of edges that share no vertex and whose bounding spheres come within `reach`.
-pub(crate) fn close_pairs(x: &[V], closed: bool, reach: f64, out: &mut Vec<(u32, u32)>) {
-    out.clear();
-    let n = x.len();
-    let n_edges = if closed { n } else { n - 1 };
-    let sphere = |i: usize| {
-        let (a, b) = (x[i], x[(i + 1) % n]);
-        (0.5 * (a + b), 0.5 * (b - a).norm())
-    };
-    let spheres: Vec<(V, f64)> = (0..n_edges).map(sphere).collect();
-    for i in 0..n_edges {
-        let (middle, radius) = spheres[i];
-        let last = if closed && i == 0 { n_edges - 1 } else { n_edges };
-        let mut j = i + 2;
-        while j < last {
-            let (other, other_radius) = spheres[j];
-            let least = reach + radius + other_radius;
-            let d2 = (middle - other).norm_squared();
-            if d2 < least * least {
-                out.push((i as u32, j as u32));
-            }
-            j += 1;
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -161,17 +142,26 @@ mod tests {
 
     #[test]
     fn gradients_are_those_of_the_guarded_quantities() {
-        let curve = crate::closed_braid(&[1, -2, 1, -2]).expect("a knot").resampled(90);
+        let curve = crate::closed_braid(&[1, -2, 1, -2])
+            .expect("a knot")
+            .resampled(90);
         let mut x = curve.expect("resampled").into_vertices();
         // Unequal edges: the shorter of two equal ones has no derivative.
-        x.iter_mut().enumerate().for_each(|(i, v)| *v *= 1.0 + 0.02 * (2.4 * i as f64).sin());
+        x.iter_mut()
+            .enumerate()
+            .for_each(|(i, v)| *v *= 1.0 + 0.02 * (2.4 * i as f64).sin());
         let (mut pairs, mut rows) = (Vec::new(), Vec::new());
         rebuild(&x, 0.6, &mut pairs, &mut rows);
         assert!(rows.iter().any(|r| r.guard == Guard::Strut));
         assert!(rows.iter().any(|r| r.guard == Guard::Kink));
         for row in rows.iter().step_by(5) {
             let at: Vec<f64> = (0..row.n())
-                .flat_map(|k| x[row.vertices[k] as usize].iter().copied().collect::<Vec<_>>())
+                .flat_map(|k| {
+                    x[row.vertices[k] as usize]
+                        .iter()
+                        .copied()
+                        .collect::<Vec<_>>()
+                })
                 .collect();
             let value = |at: &[f64]| {
                 let p = |k: usize| V::new(at[3 * k], at[3 * k + 1], at[3 * k + 2]);
@@ -183,7 +173,10 @@ mod tests {
             let gradient = finite_difference_gradient(value, &at, 1e-4);
             for (k, g) in gradient.iter().enumerate() {
                 let exact = row.gradients[k / 3][k % 3];
-                assert!((g - exact).abs() < 1e-6 * (1.0 + exact.abs()), "{row:?} {k}: {g} {exact}");
+                assert!(
+                    (g - exact).abs() < 1e-6 * (1.0 + exact.abs()),
+                    "{row:?} {k}: {g} {exact}"
+                );
             }
         }
     }

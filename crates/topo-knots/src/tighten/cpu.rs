@@ -10,7 +10,10 @@ pub(crate) struct CpuClock {
 
 impl CpuClock {
     pub fn start() -> Self {
-        Self { start: thread_seconds(), instant: Instant::now() }
+        Self {
+            start: thread_seconds(),
+            instant: Instant::now(),
+        }
     }
 
     pub fn seconds(&self) -> f64 {

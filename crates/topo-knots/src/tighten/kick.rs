@@ -16,7 +16,13 @@ pub(crate) fn kick(curve: &Polyline, amplitude: f64, rng: &mut Pcg64) -> Option<
     let n_modes = rng.random_range(3..=8);
     let mut shift = vec![V::zeros(); n];
     for mode in 1..=n_modes {
-        let mut random = || V::new(rng.random_range(-1.0..1.0), rng.random_range(-1.0..1.0), rng.random_range(-1.0..1.0));
+        let mut random = || {
+            V::new(
+                rng.random_range(-1.0..1.0),
+                rng.random_range(-1.0..1.0),
+                rng.random_range(-1.0..1.0),
+            )
+        };
         let (a, b) = (random(), random());
         for (i, s) in shift.iter_mut().enumerate() {
             let (sin, cos) = (TAU * (mode * i) as f64 / n as f64).sin_cos();
@@ -24,6 +30,10 @@ pub(crate) fn kick(curve: &Polyline, amplitude: f64, rng: &mut Pcg64) -> Option<
         }
     }
     let largest = shift.iter().map(|s| s.norm()).fold(0.0, f64::max);
-    let moved = curve.vertices().iter().zip(&shift).map(|(x, s)| x + s * (amplitude / largest));
+    let moved = curve
+        .vertices()
+        .iter()
+        .zip(&shift)
+        .map(|(x, s)| x + s * (amplitude / largest));
     Polyline::new(moved.collect(), true).ok()
 }

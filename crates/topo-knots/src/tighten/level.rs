@@ -35,8 +35,6 @@ pub(crate) struct Outcome {
     pub curve: Polyline,
     /// Its length over its thickness.
     pub ropelength: f64,
-    /// Steps made.
-    pub n_steps: usize,
     /// Matrix factorisations made.
     pub n_factorisations: usize,
     /// Whether the ropelength came to rest before the steps ran out.
@@ -66,8 +64,14 @@ pub(crate) fn tighten_level(start: &Polyline, level: &Level) -> Option<Outcome> 
         let length = curve.length();
         let h = length / n as f64;
         rebuild(curve.vertices(), delta, &mut pairs, &mut rows);
-        let stretch = Hessian { stencil: [2.0 / h, -1.0 / h, 0.0] };
-        let flat: Vec<f64> = curve.vertices().iter().flat_map(|x| [x.x, x.y, x.z]).collect();
+        let stretch = Hessian {
+            stencil: [2.0 / h, -1.0 / h, 0.0],
+        };
+        let flat: Vec<f64> = curve
+            .vertices()
+            .iter()
+            .flat_map(|x| [x.x, x.y, x.z])
+            .collect();
         stretch.multiply(&flat, &mut gradient);
         let bend = level.curvature_damping / h.powi(3);
         let hessian = Hessian {
@@ -81,8 +85,16 @@ pub(crate) fn tighten_level(start: &Polyline, level: &Level) -> Option<Outcome> 
         let solution = qp::solve(hessian, &gradient, &rows, gap)?;
         n_factorisations += solution.n_iterations;
         n_steps += 1;
-        let largest = solution.y.chunks_exact(3).map(|y| y[0].hypot(y[1]).hypot(y[2])).fold(0.0, f64::max);
-        let alpha = if largest > delta { delta / largest } else { 1.0 };
+        let largest = solution
+            .y
+            .chunks_exact(3)
+            .map(|y| y[0].hypot(y[1]).hypot(y[2]))
+            .fold(0.0, f64::max);
+        let alpha = if largest > delta {
+            delta / largest
+        } else {
+            1.0
+        };
         let moved = curve
             .vertices()
             .iter()
@@ -111,11 +123,17 @@ pub(crate) fn tighten_level(start: &Polyline, level: &Level) -> Option<Outcome> 
         delta = (1.5 * largest.min(delta)).clamp(0.03, 0.5);
         if history.len() > WINDOW {
             let before = history[history.len() - 1 - WINDOW];
-            if before - best_ropelength < level.tolerance * best_ropelength && largest < level.rest {
+            if before - best_ropelength < level.tolerance * best_ropelength && largest < level.rest
+            {
                 converged = true;
                 break;
             }
         }
     }
-    Some(Outcome { curve: best, ropelength: best_ropelength, n_steps, n_factorisations, converged })
+    Some(Outcome {
+        curve: best,
+        ropelength: best_ropelength,
+        n_factorisations,
+        converged,
+    })
 }

@@ -29,8 +29,6 @@ impl Hessian {
 pub(crate) struct Solution {
     /// Displacements, three numbers a vertex.
     pub y: Vec<f64>,
-    /// Multiplier of each row.
-    pub multipliers: Vec<f64>,
     /// Factorisations used.
     pub n_iterations: usize,
     /// Whether the tolerance was met.
@@ -43,8 +41,13 @@ const MAX_ITERATIONS: usize = 40;
 /// Minimises `y.H y/2 + gradient.y` subject to every row, to a duality gap of `tolerance`.
 ///
 /// # References
-/// [mehrotra1992], [nocedal2006]
-pub(crate) fn solve(hessian: Hessian, gradient: &[f64], rows: &[Row], tolerance: f64) -> Option<Solution> {
+/// `mehrotra1992`, `nocedal2006`
+pub(crate) fn solve(
+    hessian: Hessian,
+    gradient: &[f64],
+    rows: &[Row],
+    tolerance: f64,
+) -> Option<Solution> {
     let (dim, m) = (gradient.len(), rows.len());
     let mut system = System::new(dim / 3, rows)?;
     let mut y = vec![0.0; dim];
@@ -55,13 +58,20 @@ pub(crate) fn solve(hessian: Hessian, gradient: &[f64], rows: &[Row], tolerance:
         system.matrix.factor().ok()?;
         y.iter_mut().zip(gradient).for_each(|(y, g)| *y = -g);
         system.matrix.solve_in_place(&mut y, 1);
-        return Some(Solution { y, multipliers: Vec::new(), n_iterations: 1, converged: true });
+        return Some(Solution {
+            y,
+            n_iterations: 1,
+            converged: true,
+        });
     }
     // A tube at rest carries tension 1: each vertex gathers about the force of one edge from its rows.
     let force = gradient.iter().map(|g| g.abs()).sum::<f64>() / m as f64;
     let mut slack: Vec<f64> = rows.iter().map(|r| (-r.bound).max(0.02)).collect();
     let mean_slack = slack.iter().sum::<f64>() / m as f64;
-    let mut multiplier: Vec<f64> = slack.iter().map(|s| 0.5 * force * mean_slack / (s + 0.1 * mean_slack)).collect();
+    let mut multiplier: Vec<f64> = slack
+        .iter()
+        .map(|s| 0.5 * force * mean_slack / (s + 0.1 * mean_slack))
+        .collect();
     let mut weights = vec![0.0; m];
     let mut primal_residual = vec![0.0; m];
     let (mut d_slack, mut d_multiplier) = (vec![0.0; m], vec![0.0; m]);
@@ -71,7 +81,10 @@ pub(crate) fn solve(hessian: Hessian, gradient: &[f64], rows: &[Row], tolerance:
     let mut converged;
     loop {
         hessian.multiply(&y, &mut dual_residual);
-        dual_residual.iter_mut().zip(gradient).for_each(|(r, g)| *r += g);
+        dual_residual
+            .iter_mut()
+            .zip(gradient)
+            .for_each(|(r, g)| *r += g);
         for (row, l) in rows.iter().zip(&multiplier) {
             row.add(-l, &mut dual_residual);
         }
@@ -102,10 +115,18 @@ pub(crate) fn solve(hessian: Hessian, gradient: &[f64], rows: &[Row], tolerance:
         for k in 0..m {
             correction[k] = slack[k] * multiplier[k];
         }
-        let mut direction = |correction: &[f64], d_slack: &mut [f64], d_multiplier: &mut [f64], step: &mut [f64]| {
-            step.iter_mut().zip(&dual_residual).for_each(|(s, r)| *s = -r);
+        let mut direction = |correction: &[f64],
+                             d_slack: &mut [f64],
+                             d_multiplier: &mut [f64],
+                             step: &mut [f64]| {
+            step.iter_mut()
+                .zip(&dual_residual)
+                .for_each(|(s, r)| *s = -r);
             for (k, row) in rows.iter().enumerate() {
-                row.add(-(correction[k] / slack[k] + weights[k] * primal_residual[k]), step);
+                row.add(
+                    -(correction[k] / slack[k] + weights[k] * primal_residual[k]),
+                    step,
+                );
             }
             system.matrix.solve_in_place(step, 1);
             for (k, row) in rows.iter().enumerate() {
@@ -134,7 +155,11 @@ pub(crate) fn solve(hessian: Hessian, gradient: &[f64], rows: &[Row], tolerance:
             multiplier[k] += reach * d_multiplier[k];
         }
     }
-    Some(Solution { y, multipliers: multiplier, n_iterations, converged })
+    Some(Solution {
+        y,
+        n_iterations,
+        converged,
+    })
 }
 
 /// Largest step that keeps all values positive (above 1 when none falls fast).
@@ -215,7 +240,12 @@ impl System {
             }
             row_blocks.push(places);
         }
-        Some(Self { matrix, blocks, stencil, row_blocks })
+        Some(Self {
+            matrix,
+            blocks,
+            stencil,
+            row_blocks,
+        })
     }
 
     fn assemble(&mut self, hessian: Hessian, rows: &[Row], weights: &[f64]) {
@@ -247,5 +277,68 @@ impl System {
                 }
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::V;
+    use crate::tighten::constraints::Guard;
+
+    fn row(vertices: [u32; 4], gradients: [V; 4], bound: f64) -> Row {
+        Row {
+            guard: Guard::Strut,
+            vertices,
+            gradients,
+            bound,
+        }
+    }
+
+    #[test]
+    fn active_and_idle_rows_are_told_apart() {
+        // Each vertex is drawn to (1, 0, 0); the first row keeps vertex 0 above y = 2, the second one is idle.
+        let gradient: Vec<f64> = (0..8).flat_map(|_| [-2.0, 0.0, 0.0]).collect();
+        let rows = [
+            row(
+                [0, 1, 2, 3],
+                [V::y(), V::zeros(), V::zeros(), V::zeros()],
+                2.0,
+            ),
+            row(
+                [5, 4, 6, 7],
+                [V::x(), V::zeros(), V::zeros(), V::zeros()],
+                -3.0,
+            ),
+        ];
+        let hessian = Hessian {
+            stencil: [2.0, 0.0, 0.0],
+        };
+        let found = solve(hessian, &gradient, &rows, 1e-10).expect("solved");
+        assert!(found.converged);
+        for (i, y) in found.y.chunks_exact(3).enumerate() {
+            let expected = V::new(1.0, if i == 0 { 2.0 } else { 0.0 }, 0.0);
+            assert!(
+                (V::from_column_slice(y) - expected).norm() < 1e-5,
+                "{i}: {y:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn without_rows_it_is_a_linear_system() {
+        let gradient: Vec<f64> = (0..30).map(|k| (k as f64).sin()).collect();
+        let hessian = Hessian {
+            stencil: [6.5, -4.0, 1.0],
+        };
+        let found = solve(hessian, &gradient, &[], 1e-9).expect("solved");
+        let mut product = vec![0.0; 30];
+        hessian.multiply(&found.y, &mut product);
+        assert!(
+            product
+                .iter()
+                .zip(&gradient)
+                .all(|(p, g)| (p + g).abs() < 1e-10)
+        );
     }
 }

@@ -51,10 +51,20 @@ pub(crate) fn search(
     pool.truncate(N_FINALISTS);
     for k in 0..settings.n_kicks {
         // The first half of the kicks is shared, the second half goes to the leader.
-        let place = if 2 * k < settings.n_kicks { k % N_FINALISTS } else { 0 };
-        let Some(curve) = pool.get(place).map(|o| &o.curve) else { continue };
-        let Some(kicked) = kick(curve, KICK * thickness(curve).tau, &mut rng) else { continue };
-        let Some(outcome) = tighten_level(&kicked, &level()) else { continue };
+        let place = if 2 * k < settings.n_kicks {
+            k % N_FINALISTS
+        } else {
+            0
+        };
+        let Some(curve) = pool.get(place).map(|o| &o.curve) else {
+            continue;
+        };
+        let Some(kicked) = kick(curve, KICK * thickness(curve).tau, &mut rng) else {
+            continue;
+        };
+        let Some(outcome) = tighten_level(&kicked, &level()) else {
+            continue;
+        };
         n_factorisations += outcome.n_factorisations;
         if outcome.ropelength < pool[place].ropelength
             && check_type(name, &outcome.curve, kind, "searching").is_ok()
@@ -64,23 +74,43 @@ pub(crate) fn search(
         }
     }
     match pool.into_iter().next() {
-        Some(best) => Ok(Outcome { n_factorisations, ..best }),
-        None => Err(KnotError::NotTightened { knot: name.to_owned(), n_starts: starts.len(), last }),
+        Some(best) => Ok(Outcome {
+            n_factorisations,
+            ..best
+        }),
+        None => Err(KnotError::NotTightened {
+            knot: name.to_owned(),
+            n_starts: starts.len(),
+            last,
+        }),
     }
 }
 
 fn level() -> Level {
-    Level { damping: 0.02, curvature_damping: 0.1, tolerance: 1e-3, rest: 0.3, enough: 0.0, max_steps: 100 }
+    Level {
+        damping: 0.02,
+        curvature_damping: 0.1,
+        tolerance: 1e-3,
+        rest: 0.3,
+        enough: 0.0,
+        max_steps: 100,
+    }
 }
 
 /// Tightens a start that may be several times too long: first with as many vertices as it needs to bend.
 fn tighten_loose(start: &Polyline, settings: &TightenSettings) -> Option<Outcome> {
     let n = settings.search_vertices;
-    let n_loose = (LOOSE_PER_UNIT * start.length() / thickness(start).tau).min(4.0 * n as f64) as usize;
+    let n_loose =
+        (LOOSE_PER_UNIT * start.length() / thickness(start).tau).min(4.0 * n as f64) as usize;
     let mut curve = start.clone();
     let mut n_factorisations = 0;
     if n_loose > n {
-        let loose = Level { tolerance: 2e-2, max_steps: 60, enough: n as f64, ..level() };
+        let loose = Level {
+            tolerance: 2e-2,
+            max_steps: 60,
+            enough: n as f64,
+            ..level()
+        };
         let outcome = tighten_level(&start.resampled(n_loose).ok()?, &loose)?;
         n_factorisations = outcome.n_factorisations;
         curve = outcome.curve;

@@ -39,12 +39,23 @@ impl TightenSettings {
 
     /// Eight vertices per unit of ropelength: within about a tenth of a percent.
     pub fn standard() -> Self {
-        Self { per_unit: 8.0, tolerance: 1e-4, ..Self::draft() }
+        Self {
+            per_unit: 8.0,
+            tolerance: 1e-4,
+            ..Self::draft()
+        }
     }
 
     /// Sixteen vertices per unit of ropelength and a longer search.
     pub fn fine() -> Self {
-        Self { per_unit: 16.0, n_variants: 2, n_kicks: 12, tolerance: 2e-5, max_steps: 200, ..Self::draft() }
+        Self {
+            per_unit: 16.0,
+            n_variants: 2,
+            n_kicks: 12,
+            tolerance: 2e-5,
+            max_steps: 200,
+            ..Self::draft()
+        }
     }
 
     /// Numbers of vertices per unit of ropelength, coarse to fine.
@@ -62,16 +73,56 @@ impl TightenSettings {
     /// [`KnotError::Setting`] naming the setting, its value and its range.
     pub fn check(&self) -> Result<(), KnotError> {
         let checks = [
-            ("per_unit", self.per_unit, 1.0, 64.0, "expected 1 to 64 vertices per unit of ropelength"),
-            ("search_vertices", self.search_vertices as f64, 32.0, 4096.0, "expected 32 to 4096"),
-            ("n_variants", self.n_variants as f64, 0.0, 1000.0, "expected at most 1000"),
-            ("n_kicks", self.n_kicks as f64, 0.0, 10_000.0, "expected at most 10000"),
-            ("tolerance", self.tolerance, 1e-9, 1e-2, "expected 1e-9 to 1e-2"),
-            ("max_steps", self.max_steps as f64, 1.0, 100_000.0, "expected 1 to 100000"),
+            (
+                "per_unit",
+                self.per_unit,
+                1.0,
+                64.0,
+                "expected 1 to 64 vertices per unit of ropelength",
+            ),
+            (
+                "search_vertices",
+                self.search_vertices as f64,
+                32.0,
+                4096.0,
+                "expected 32 to 4096",
+            ),
+            (
+                "n_variants",
+                self.n_variants as f64,
+                0.0,
+                1000.0,
+                "expected at most 1000",
+            ),
+            (
+                "n_kicks",
+                self.n_kicks as f64,
+                0.0,
+                10_000.0,
+                "expected at most 10000",
+            ),
+            (
+                "tolerance",
+                self.tolerance,
+                1e-9,
+                1e-2,
+                "expected 1e-9 to 1e-2",
+            ),
+            (
+                "max_steps",
+                self.max_steps as f64,
+                1.0,
+                100_000.0,
+                "expected 1 to 100000",
+            ),
         ];
         for (name, value, least, most, expected) in checks {
             if !(least..=most).contains(&value) {
-                return Err(KnotError::Setting { name, value, expected });
+                return Err(KnotError::Setting {
+                    name,
+                    value,
+                    expected,
+                });
             }
         }
         Ok(())
@@ -90,7 +141,11 @@ mod tests {
 
     #[test]
     fn presets_pass_and_levels_double() {
-        for preset in [TightenSettings::draft(), TightenSettings::standard(), TightenSettings::fine()] {
+        for preset in [
+            TightenSettings::draft(),
+            TightenSettings::standard(),
+            TightenSettings::fine(),
+        ] {
             preset.check().expect("in range");
         }
         assert_eq!(TightenSettings::draft().levels(), [4.0]);
@@ -99,7 +154,16 @@ mod tests {
 
     #[test]
     fn settings_out_of_range_are_named() {
-        let bad = TightenSettings { tolerance: f64::NAN, ..TightenSettings::draft() };
-        assert!(matches!(bad.check(), Err(KnotError::Setting { name: "tolerance", .. })));
+        let bad = TightenSettings {
+            tolerance: f64::NAN,
+            ..TightenSettings::draft()
+        };
+        assert!(matches!(
+            bad.check(),
+            Err(KnotError::Setting {
+                name: "tolerance",
+                ..
+            })
+        ));
     }
 }

@@ -1,0 +1,100 @@
+//! Tight shapes of the table's knots, computed once and kept in a folder under the hash of what they depend on.
+
+use std::path::{Path, PathBuf};
+
+use topo_core::{load_checkpoint, save_checkpoint};
+
+use crate::{KnotEntry, KnotError, TightKnot, TightenSettings, tighten_entry};
+
+/// Changes whenever the tightening gives other results, so that older files are not used.
+const METHOD_VERSION: u32 = 1;
+/// Name and version of the type in the files.
+const SCHEMA: &str = "tight-knot/1";
+
+/// The tight shape of a knot: from the folder `cache` if it is there and sound, else computed and kept there.
+///
+/// The file's name holds a hash of the entry, the settings and the version of the method. A file that cannot be read, is
+/// truncated or corrupt is computed again and replaced.
+///
+/// # Errors
+/// As [`tighten_entry`], and [`KnotError::File`] if the result cannot be written.
+///
+/// # Validation
+/// `a_corrupt_cache_is_replaced`
+pub fn ideal(
+    entry: &KnotEntry,
+    settings: &TightenSettings,
+    cache: Option<&Path>,
+) -> Result<TightKnot, KnotError> {
+    let Some(folder) = cache else {
+        return tighten_entry(entry, settings);
+    };
+    let path = cache_path(folder, entry, settings);
+    if let Ok(tight) = load_checkpoint::<TightKnot>(&path, SCHEMA) {
+        return Ok(tight);
+    }
+    let tight = tighten_entry(entry, settings)?;
+    std::fs::create_dir_all(folder).map_err(|source| KnotError::Io {
+        path: folder.to_owned(),
+        action: "create the folder",
+        source,
+    })?;
+    save_checkpoint(&path, SCHEMA, &tight)?;
+    Ok(tight)
+}
+
+/// File that holds the tight shape of `entry` under `settings`.
+fn cache_path(folder: &Path, entry: &KnotEntry, settings: &TightenSettings) -> PathBuf {
+    // The debug text of a number reads back to the bit, so nothing that matters is lost.
+    let key = format!("{METHOD_VERSION}\n{entry:?}\n{settings:?}");
+    let hash = blake3::hash(key.as_bytes()).to_hex();
+    folder.join(format!("{}-{}.tight", entry.name, &hash[..16]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::KnotTable;
+
+    #[test]
+    fn a_corrupt_cache_is_replaced() {
+        let folder = std::env::temp_dir().join(format!("topo-knots-cache-{}", std::process::id()));
+        let table = KnotTable::builtin();
+        let entry = table.get("3_1").expect("known");
+        let settings = TightenSettings {
+            n_kicks: 0,
+            n_variants: 0,
+            ..TightenSettings::draft()
+        };
+        let first = ideal(entry, &settings, Some(&folder)).expect("tight");
+        let path = cache_path(&folder, entry, &settings);
+        assert_eq!(
+            ideal(entry, &settings, Some(&folder)).expect("cached"),
+            first
+        );
+        let sound = std::fs::read(&path).expect("written");
+        let mut corrupt = sound.clone();
+        corrupt[sound.len() / 2] ^= 1;
+        for bad in [&corrupt[..], &sound[..sound.len() - 9], b""] {
+            std::fs::write(&path, bad).expect("written");
+            let again = ideal(entry, &settings, Some(&folder)).expect("computed again");
+            assert_eq!(again.curve, first.curve);
+            load_checkpoint::<TightKnot>(&path, SCHEMA).expect("replaced");
+        }
+        std::fs::remove_dir_all(&folder).expect("removed");
+    }
+
+    #[test]
+    fn the_file_depends_on_entry_and_settings() {
+        let table = KnotTable::builtin();
+        let (a, b) = (
+            table.get("3_1").expect("known"),
+            table.get("m3_1").expect("known"),
+        );
+        let (draft, standard) = (TightenSettings::draft(), TightenSettings::standard());
+        let path = |entry, settings| cache_path(Path::new("c"), entry, settings);
+        assert_ne!(path(a, &draft), path(b, &draft));
+        assert_ne!(path(a, &draft), path(a, &standard));
+        assert_eq!(path(a, &draft), path(&a.clone(), &TightenSettings::draft()));
+    }
+}
