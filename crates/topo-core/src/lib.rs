@@ -11,6 +11,7 @@
 mod check;
 mod checkpoint;
 mod control;
+mod cpu;
 mod curve;
 mod discharge;
 mod error;
@@ -28,6 +29,7 @@ pub use check::{
 };
 pub use checkpoint::{load_checkpoint, save_checkpoint};
 pub use control::{Rejection, RejectionCounts, StepControl};
+pub use cpu::CpuClock;
 pub use curve::{Polyline, average_crossing_number, writhe};
 pub use discharge::{DischargeCurve, DischargeError};
 pub use error::{CurveError, SparseError};

@@ -1,15 +1,15 @@
 //! Elastic energy density along the rod.
 
-use crate::{Geometry, RodModel, RodState};
+use crate::{Geometry, RodParameters, RodState};
 
 /// Elastic energy per area and length at each vertex (bend, twist and stretch; contact left out), in E_b.
 ///
 /// Times A it is the density in E_b h² that the figures show. Sums with the vertices' share of arclength to the elastic energy.
-pub fn energy_density(model: &RodModel, state: &RodState) -> Vec<f64> {
+pub fn energy_density(parameters: &RodParameters, state: &RodState) -> Vec<f64> {
     let g = Geometry::new(state);
     let (l0, m, n) = (state.rest_length(), state.twists(), state.n_vertices());
-    let twist_ratio = model.twist_ratio();
-    let stretch = |j: usize| 0.5 * model.stretch_ratio() * (g.edge_length[j] / l0 - 1.0).powi(2);
+    let twist_ratio = parameters.twist.map_or(0.0, |_| parameters.twist_ratio);
+    let stretch = |j: usize| 0.5 * parameters.stretch_ratio * (g.edge_length[j] / l0 - 1.0).powi(2);
     (0..n)
         .map(|i| {
             if !state.is_closed() && (i == 0 || i + 1 == n) {

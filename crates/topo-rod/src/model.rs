@@ -41,7 +41,6 @@ pub struct WorkAccount {
 pub struct RodModel {
     terms: Vec<Box<dyn EnergyTerm>>,
     twist: Option<Twist>,
-    stretch_ratio: f64,
     friction: Option<Friction>,
     pairs: ContactPairs,
     has_strands: bool,
@@ -167,7 +166,6 @@ impl RodModel {
         let names: Vec<&'static str> = terms.iter().map(|t| t.name()).collect();
         Ok(Self {
             twist,
-            stretch_ratio: parameters.stretch_ratio,
             friction,
             pairs,
             has_strands: reach > 0.0,
@@ -222,16 +220,6 @@ impl RodModel {
         ledger.record_event("cut", 0.0, removed);
         ledger.set_stored(&open);
         self.ledger = ledger;
-    }
-
-    /// Total twist ratio α, or 0 when no twist is modelled.
-    pub fn twist_ratio(&self) -> f64 {
-        self.twist.map_or(0.0, |t| t.ratio)
-    }
-
-    /// γ.
-    pub fn stretch_ratio(&self) -> f64 {
-        self.stretch_ratio
     }
 
     /// Pairs of vertices in reach.

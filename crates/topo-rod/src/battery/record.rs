@@ -2,7 +2,6 @@
 
 use std::f64::consts::PI;
 
-use nalgebra::Vector3;
 use serde::Serialize;
 use topo_core::{Counters, DischargeCurve, Ledger, RejectionCounts, Sample, StopReason};
 
@@ -34,10 +33,8 @@ pub struct RodSample {
     pub min_distance: Option<f64>,
     /// Distance of the ends, in h.
     pub end_to_end: f64,
-    /// Positions, in h.
-    pub vertices: Vec<Vector3<f64>>,
-    /// Integrated twists.
-    pub twists: Vec<f64>,
+    /// Positions and twists.
+    pub state: RodState,
 }
 
 impl RodSample {
@@ -183,8 +180,7 @@ impl SampleRecorder {
             n_contacts: pairs.active().iter().filter(touching).count(),
             min_distance: pairs.least_distance(),
             end_to_end: state.end_to_end(),
-            vertices: state.vertices().to_vec(),
-            twists: state.twists().to_vec(),
+            state: state.clone(),
         });
     }
 }

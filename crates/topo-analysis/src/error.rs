@@ -1,0 +1,79 @@
+//! What can go wrong between a scene and its tables.
+
+use std::path::PathBuf;
+
+use thiserror::Error;
+
+/// A scene, a case or a table cannot be had as asked; the message says what, where, and what would be right.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum AnalysisError {
+    /// A scene file cannot be read.
+    #[error("cannot read the scene {path}: {source}")]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// A scene is not valid TOML or has an unknown key or a value of the wrong type.
+    #[error("{path} is not a scene:\n{message}")]
+    Scene {
+        /// The file, or a name for a text.
+        path: PathBuf,
+        /// Line, key and what was expected.
+        message: String,
+    },
+    /// A value of a scene is out of range.
+    #[error("{path}: {key} = {value} is not possible: {remedy}")]
+    SceneValue {
+        /// The file.
+        path: PathBuf,
+        /// Key with its table.
+        key: String,
+        /// What was written.
+        value: String,
+        /// What would be right.
+        remedy: String,
+    },
+    /// The rod refuses its parameters.
+    #[error("{case}: {source}")]
+    Rod {
+        /// Which case, or the scene's file.
+        case: String,
+        /// Why.
+        source: topo_rod::RodError,
+    },
+    /// A knot is unknown, or its shape cannot be had.
+    #[error(transparent)]
+    Knot(#[from] topo_knots::KnotError),
+    /// A file cannot be written or read.
+    #[error(transparent)]
+    File(#[from] topo_core::FileError),
+    /// A table cannot be written or read.
+    #[error("table {path}: {source}")]
+    Table {
+        /// The file.
+        path: PathBuf,
+        /// Where and why.
+        source: csv::Error,
+    },
+    /// The output folder cannot be used.
+    #[error(
+        "cannot write to the output folder {path}: {source}; choose another with --out or give permission"
+    )]
+    Output {
+        /// The folder.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// The threads cannot be started.
+    #[error("cannot start {jobs} jobs: {reason}")]
+    Jobs {
+        /// How many were asked for.
+        jobs: usize,
+        /// Why.
+        reason: String,
+    },
+}

@@ -1,0 +1,94 @@
+//! Tight shapes for a sweep, and the table of knots.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use rayon::prelude::*;
+use topo_core::{Interrupt, Snapshot};
+use topo_knots::{KnotEntry, KnotTable, TightKnot, TightenSettings, ideal};
+
+use crate::AnalysisError;
+use crate::sweep::{Event, make_folder};
+use crate::table::{KnotRow, write_table};
+
+/// Tight shapes by name.
+pub type Shapes = BTreeMap<String, TightKnot>;
+
+/// Tight shapes of the knots `names`, in parallel; those found below `out` are read instead of computed.
+///
+/// Stops early, with what is there, when interrupted.
+///
+/// # Errors
+/// An unknown knot, or one that cannot be tightened.
+pub fn tight_shapes(
+    names: &[String],
+    table: &KnotTable,
+    settings: &TightenSettings,
+    out: &Path,
+    interrupt: &Interrupt,
+    progress: &(dyn Fn(Event<'_>) + Sync),
+) -> Result<Shapes, AnalysisError> {
+    let entries: Vec<&KnotEntry> = names
+        .iter()
+        .map(|n| table.get(n))
+        .collect::<Result<_, _>>()?;
+    let cache = knots_folder(out).join("cache");
+    let made: Vec<Option<(String, TightKnot)>> = entries
+        .par_iter()
+        .with_max_len(1)
+        .map(|entry| {
+            if interrupt.is_requested() {
+                return Ok(None);
+            }
+            let tight = ideal(entry, settings, Some(&cache))?;
+            progress(Event::Knot {
+                name: &entry.name,
+                length_over_radius: tight.length_over_radius,
+            });
+            Ok(Some((entry.name.clone(), tight)))
+        })
+        .collect::<Result<_, AnalysisError>>()?;
+    Ok(made.into_iter().flatten().collect())
+}
+
+/// Where the table of knots lies below an output folder.
+pub fn knots_folder(out: &Path) -> std::path::PathBuf {
+    out.join("knots")
+}
+
+/// Writes `knots/table.csv` and a curve a knot, `knots/<knot>.csv`, at thickness 1.
+///
+/// # Errors
+/// A file that cannot be written.
+pub fn write_knots(
+    shapes: &Shapes,
+    table: &KnotTable,
+    out: &Path,
+) -> Result<Vec<KnotRow>, AnalysisError> {
+    let folder = knots_folder(out);
+    make_folder(&folder)?;
+    let mut rows = Vec::new();
+    for (name, tight) in shapes {
+        let reference = table.get(name)?.length_over_radius;
+        let certificate = &tight.certificate;
+        rows.push(KnotRow {
+            knot: name.clone(),
+            vertices: tight.curve.n_vertices(),
+            length_over_radius: tight.length_over_radius,
+            reference,
+            excess_percent: reference.map(|r| 100.0 * (tight.length_over_radius / r - 1.0)),
+            writhe: certificate.writhe,
+            average_crossing_number: certificate.average_crossing_number,
+            struts: certificate.n_struts,
+            kinks: certificate.n_kinks,
+            alexander: certificate.invariants.alexander_text(),
+            determinant: certificate.invariants.determinant,
+            signature: certificate.invariants.signature,
+            cpu_seconds: tight.cpu_seconds,
+        });
+        Snapshot::new(tight.curve.vertices().to_vec())
+            .write(&folder.join(format!("{name}.csv")))?;
+    }
+    write_table(&folder.join("table.csv"), &rows)?;
+    Ok(rows)
+}

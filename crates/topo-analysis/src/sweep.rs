@@ -1,0 +1,217 @@
+//! A scene's cases, in parallel, resumable, into one table.
+
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use rayon::prelude::*;
+use topo_core::Interrupt;
+use topo_knots::KnotTable;
+
+use crate::AnalysisError;
+use crate::case::{self, fingerprint, finished};
+use crate::knots::{Shapes, tight_shapes};
+use crate::scene::ElasticScene;
+use crate::table::{SweepRow, write_table};
+
+/// What a sweep tells while it runs; calls come from any of its threads.
+#[derive(Debug, Clone, Copy)]
+#[non_exhaustive]
+pub enum Event<'a> {
+    /// The sweep begins.
+    Begin {
+        /// Cases of the scene.
+        n_cases: usize,
+        /// Those finished by an earlier run.
+        n_reused: usize,
+    },
+    /// The start shape of a knot is ready.
+    Knot {
+        /// Its name.
+        name: &'a str,
+        /// Its ropelength.
+        length_over_radius: f64,
+    },
+    /// A case is finished.
+    Case {
+        /// Its name.
+        name: &'a str,
+        /// Cases finished so far, those of earlier runs included.
+        n_done: usize,
+        /// Its warnings; empty if there are none.
+        warnings: &'a str,
+    },
+}
+
+/// Where and how a sweep runs.
+#[derive(Debug, Clone)]
+pub struct SweepSettings {
+    /// Output folder; tables go to `elastic/` below it.
+    pub out: PathBuf,
+    /// Cases at a time; 0: one a core.
+    pub jobs: usize,
+    /// Compute again what is finished.
+    pub fresh: bool,
+    /// Asks the sweep to stop; finished cases are kept.
+    pub interrupt: Interrupt,
+}
+
+/// What a sweep leaves behind.
+#[derive(Debug, Clone)]
+pub struct SweepReport {
+    /// Rows of the table, cases in the order of the scene.
+    pub rows: Vec<SweepRow>,
+    /// Cases computed now.
+    pub n_computed: usize,
+    /// Cases found finished.
+    pub n_reused: usize,
+    /// Whether it was asked to stop before the end.
+    pub interrupted: bool,
+    /// Tight shapes it started from.
+    pub shapes: Shapes,
+}
+
+/// Runs `work` on a pool of `jobs` threads (0: one a core).
+///
+/// # Errors
+/// Threads that cannot be started.
+pub fn with_jobs<R: Send>(
+    jobs: usize,
+    work: impl FnOnce() -> R + Send,
+) -> Result<R, AnalysisError> {
+    let failed = |e: rayon::ThreadPoolBuildError| AnalysisError::Jobs {
+        jobs,
+        reason: e.to_string(),
+    };
+    Ok(rayon::ThreadPoolBuilder::new()
+        .num_threads(jobs)
+        .build()
+        .map_err(failed)?
+        .install(work))
+}
+
+/// Makes a folder and those above it.
+pub(crate) fn make_folder(folder: &Path) -> Result<(), AnalysisError> {
+    std::fs::create_dir_all(folder).map_err(|source| AnalysisError::Output {
+        path: folder.to_owned(),
+        source,
+    })
+}
+
+/// Makes sure that a folder can be written to.
+///
+/// # Errors
+/// The folder and what to do.
+pub fn writable(folder: &Path) -> Result<(), AnalysisError> {
+    let wrong = |source| AnalysisError::Output {
+        path: folder.to_owned(),
+        source,
+    };
+    make_folder(folder)?;
+    tempfile::tempfile_in(folder).map(drop).map_err(wrong)
+}
+
+/// Runs all cases of a scene; what an earlier run finished with the same settings is kept.
+///
+/// Each case writes its own folder and is complete when its `run.json` is there; `elastic/sweep.csv` is written at the end, also
+/// after an interrupt, from what is finished. Results do not depend on the number of jobs.
+///
+/// # Errors
+/// An unknown knot, a rod that cannot be built, or files that cannot be written. A run that stops early is no error: its row
+/// carries the reason.
+pub fn run_sweep(
+    scene: &ElasticScene,
+    table: &KnotTable,
+    settings: &SweepSettings,
+    progress: &(dyn Fn(Event<'_>) + Sync),
+) -> Result<SweepReport, AnalysisError> {
+    let folder = ElasticScene::folder(&settings.out);
+    writable(&folder)?;
+    let cases = scene.cases(table)?;
+    let mut found = Vec::with_capacity(cases.len());
+    for case in &cases {
+        let entry = table.get(&case.knot)?;
+        let mark = fingerprint(scene, case, entry);
+        found.push(if settings.fresh {
+            None
+        } else {
+            finished(&folder.join(case.name()), &mark)
+        });
+    }
+    let n_reused = found.iter().filter(|f| f.is_some()).count();
+    progress(Event::Begin {
+        n_cases: cases.len(),
+        n_reused,
+    });
+    let mut names: Vec<String> = cases
+        .iter()
+        .zip(&found)
+        .filter(|(_, f)| f.is_none())
+        .map(|(c, _)| c.knot.clone())
+        .collect();
+    names.dedup();
+    names.sort();
+    names.dedup();
+    let n_done = AtomicUsize::new(n_reused);
+    let (shapes, computed) = with_jobs(settings.jobs, || -> Result<_, AnalysisError> {
+        let shapes = tight_shapes(
+            &names,
+            table,
+            &scene.tighten,
+            &settings.out,
+            &settings.interrupt,
+            progress,
+        )?;
+        let computed: Vec<Option<Vec<SweepRow>>> = cases
+            .par_iter()
+            .zip(&found)
+            .with_max_len(1)
+            .map(|(case, found)| {
+                if found.is_some() || settings.interrupt.is_requested() {
+                    return Ok(None);
+                }
+                let Some(tight) = shapes.get(&case.knot) else {
+                    return Ok(None);
+                };
+                let rows = case::run(
+                    scene,
+                    case,
+                    tight,
+                    table,
+                    &folder.join(case.name()),
+                    &settings.interrupt,
+                )?;
+                if let Some(rows) = &rows {
+                    let n_done = n_done.fetch_add(1, Ordering::Relaxed) + 1;
+                    let warnings: Vec<&str> = rows
+                        .iter()
+                        .map(|r| r.warnings.as_str())
+                        .filter(|w| !w.is_empty())
+                        .collect();
+                    progress(Event::Case {
+                        name: &case.name(),
+                        n_done,
+                        warnings: &warnings.join(";"),
+                    });
+                }
+                Ok(rows)
+            })
+            .collect::<Result<_, AnalysisError>>()?;
+        Ok((shapes, computed))
+    })??;
+    let n_computed = computed.iter().filter(|c| c.is_some()).count();
+    let interrupted = settings.interrupt.is_requested() && n_computed + n_reused < cases.len();
+    let rows: Vec<SweepRow> = found
+        .into_iter()
+        .zip(computed)
+        .filter_map(|(f, c)| f.or(c))
+        .flatten()
+        .collect();
+    write_table(&folder.join("sweep.csv"), &rows)?;
+    Ok(SweepReport {
+        rows,
+        n_computed,
+        n_reused,
+        interrupted,
+        shapes,
+    })
+}

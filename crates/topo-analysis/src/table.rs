@@ -1,0 +1,170 @@
+//! Rows of the tables that figures draw, and how they are written and read.
+
+use std::path::Path;
+
+use serde::{Deserialize, Serialize, de::DeserializeOwned};
+use topo_core::write_atomic_bytes;
+
+use crate::AnalysisError;
+
+/// One discharge: energies in E_0 = E_b h² L, times in T_0 = 2 L η/(h E_b), L the row's own length.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct SweepRow {
+    /// Knot type.
+    pub knot: String,
+    /// θ'h tied in before the ends were fused.
+    pub twist: f64,
+    /// Place of the cut, s/L.
+    pub cut: f64,
+    /// Reading of the slenderness.
+    pub reading: String,
+    /// Edges of the rod.
+    pub edges: usize,
+    /// Elastic energy after charging.
+    pub energy: f64,
+    /// Its bending part.
+    pub bend: f64,
+    /// Its twist part.
+    pub twist_energy: f64,
+    /// Its stretch part.
+    pub stretch: f64,
+    /// Writhe after charging.
+    pub writhe: f64,
+    /// Total twist after charging, in turns.
+    pub total_twist: f64,
+    /// Time at which half of the elastic energy after the cut was released.
+    pub t50: Option<f64>,
+    /// Same for 90 %.
+    pub t90: Option<f64>,
+    /// Same for 95 %.
+    pub t95: Option<f64>,
+    /// Same for 99 %.
+    pub t99: Option<f64>,
+    /// Time of the last change of the knot type to the unknot; empty if not seen.
+    pub t_untie: Option<f64>,
+    /// Largest |Δ(Tw + Wr)| while closed, in turns.
+    pub link_drift: Option<f64>,
+    /// Least distance of vertices of different strands over the contact diameter, charge and discharge.
+    pub min_distance_over_contact: Option<f64>,
+    /// Accepted steps of charge and discharge.
+    pub steps: u64,
+    /// Refused steps of charge and discharge.
+    pub rejected: u64,
+    /// Processor seconds of this discharge and its share of the charge.
+    pub cpu_seconds: f64,
+    /// Warnings, separated by `;`.
+    pub warnings: String,
+}
+
+impl SweepRow {
+    /// t50, t90, t95 and t99.
+    pub fn times(&self) -> [Option<f64>; 4] {
+        [self.t50, self.t90, self.t95, self.t99]
+    }
+}
+
+/// One knot: lengths in units of the tube radius.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct KnotRow {
+    /// Name.
+    pub knot: String,
+    /// Vertices of the tight polygon.
+    pub vertices: usize,
+    /// Its ropelength.
+    pub length_over_radius: f64,
+    /// Published ropelength, if any.
+    pub reference: Option<f64>,
+    /// Excess over the published one, in per cent.
+    pub excess_percent: Option<f64>,
+    /// Writhe.
+    pub writhe: f64,
+    /// Average crossing number.
+    pub average_crossing_number: f64,
+    /// Pairs of edges in contact.
+    pub struts: usize,
+    /// Vertices as sharp as the tube allows.
+    pub kinks: usize,
+    /// Coefficients of the Alexander polynomial.
+    pub alexander: String,
+    /// Determinant.
+    pub determinant: u64,
+    /// Signature.
+    pub signature: i32,
+    /// Processor seconds that the tightening took.
+    pub cpu_seconds: f64,
+}
+
+/// Writes rows as CSV with a header, atomically.
+///
+/// # Errors
+/// A file that cannot be written, with its path and the remedy.
+pub fn write_table<T: Serialize>(path: &Path, rows: &[T]) -> Result<(), AnalysisError> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    for row in rows {
+        writer
+            .serialize(row)
+            .map_err(|source| AnalysisError::Table {
+                path: path.to_owned(),
+                source,
+            })?;
+    }
+    let bytes = writer.into_inner().map_err(|e| AnalysisError::Table {
+        path: path.to_owned(),
+        source: e.into_error().into(),
+    })?;
+    Ok(write_atomic_bytes(path, &bytes)?)
+}
+
+/// Reads rows of a CSV with a header.
+///
+/// # Errors
+/// A file that cannot be read or a row that does not fit, with path and line.
+pub fn read_table<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>, AnalysisError> {
+    let wrong = |source| AnalysisError::Table {
+        path: path.to_owned(),
+        source,
+    };
+    csv::Reader::from_path(path)
+        .map_err(wrong)?
+        .deserialize()
+        .collect::<Result<_, _>>()
+        .map_err(wrong)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tables_come_back_as_written_and_carry_the_agreed_header() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("sweep.csv");
+        let rows = vec![
+            SweepRow {
+                knot: "3_1".into(),
+                t99: Some(19.5),
+                warnings: "a;b".into(),
+                ..Default::default()
+            },
+            SweepRow::default(),
+        ];
+        write_table(&path, &rows).unwrap();
+        assert_eq!(read_table::<SweepRow>(&path).unwrap(), rows);
+        let text = std::fs::read_to_string(&path).unwrap();
+        assert_eq!(
+            text.lines().next().unwrap(),
+            "knot,twist,cut,reading,edges,energy,bend,twist_energy,stretch,writhe,total_twist,t50,t90,t95,t99,t_untie,link_drift,min_distance_over_contact,steps,rejected,cpu_seconds,warnings"
+        );
+        let path = folder.path().join("table.csv");
+        write_table(&path, &[KnotRow::default()]).unwrap();
+        assert_eq!(
+            std::fs::read_to_string(&path)
+                .unwrap()
+                .lines()
+                .next()
+                .unwrap(),
+            "knot,vertices,length_over_radius,reference,excess_percent,writhe,average_crossing_number,struts,kinks,alexander,determinant,signature,cpu_seconds"
+        );
+        assert!(read_table::<SweepRow>(&path).is_err());
+    }
+}

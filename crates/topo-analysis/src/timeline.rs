@@ -1,0 +1,152 @@
+//! Knot types while a cut rod is open, and when it is untied.
+
+use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
+use topo_knots::{KnotTable, identify_open};
+
+use crate::AnalysisError;
+
+/// Knot type of an open curve at one time.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct TypedSample {
+    /// Index of the sample that was typed.
+    pub sample: usize,
+    /// Its time.
+    pub time: f64,
+    /// Most frequent type over the closures.
+    pub knot: String,
+    /// Share of the closures with that type.
+    pub probability: f64,
+}
+
+/// The sequence of knot types of a discharge.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Timeline {
+    samples: Vec<TypedSample>,
+}
+
+/// How types are found: closures a sample, and every how many samples to look before refining.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct TimelineSettings {
+    /// Closures of the open curve, spread over the sphere; 0: no timeline.
+    pub closures: usize,
+    /// Samples between two looks; where two looks differ, all between are typed.
+    pub stride: usize,
+}
+
+impl Default for TimelineSettings {
+    fn default() -> Self {
+        Self {
+            closures: 32,
+            stride: 6,
+        }
+    }
+}
+
+impl Timeline {
+    /// Types the samples of a discharge: every `stride`-th, and all between two that differ.
+    ///
+    /// # Errors
+    /// A curve that runs through itself or is not finite.
+    pub fn of(
+        samples: &[(f64, &[Vector3<f64>])],
+        table: &KnotTable,
+        settings: TimelineSettings,
+        seed: u64,
+    ) -> Result<Self, AnalysisError> {
+        if settings.closures == 0 || samples.is_empty() {
+            return Ok(Self::default());
+        }
+        let mut typed: Vec<Option<TypedSample>> = vec![None; samples.len()];
+        let look = |k: usize| -> Result<Option<TypedSample>, AnalysisError> {
+            let (time, vertices) = samples[k];
+            let found = identify_open(vertices, settings.closures, seed, table)?;
+            let (knot, probability) = found.distribution.into_iter().next().unwrap_or_default();
+            Ok(Some(TypedSample {
+                sample: k,
+                time,
+                knot,
+                probability,
+            }))
+        };
+        let last = samples.len() - 1;
+        let looks: Vec<usize> = (0..last)
+            .step_by(settings.stride.max(1))
+            .chain([last])
+            .collect();
+        for &k in &looks {
+            typed[k] = look(k)?;
+        }
+        for pair in looks.windows(2) {
+            let differ = match (&typed[pair[0]], &typed[pair[1]]) {
+                (Some(a), Some(b)) => a.knot != b.knot,
+                _ => true,
+            };
+            if differ {
+                for k in pair[0] + 1..pair[1] {
+                    typed[k] = look(k)?;
+                }
+            }
+        }
+        Ok(Self {
+            samples: typed.into_iter().flatten().collect(),
+        })
+    }
+
+    /// The typed samples in time.
+    pub fn samples(&self) -> &[TypedSample] {
+        &self.samples
+    }
+
+    /// The type found at sample `k`, if it was typed.
+    pub fn at(&self, k: usize) -> Option<&TypedSample> {
+        self.samples
+            .binary_search_by_key(&k, |s| s.sample)
+            .ok()
+            .map(|i| &self.samples[i])
+    }
+
+    /// Types in the order of their appearance, repetitions left out.
+    pub fn sequence(&self) -> Vec<&str> {
+        let mut names: Vec<&str> = self.samples.iter().map(|s| s.knot.as_str()).collect();
+        names.dedup();
+        names
+    }
+
+    /// Time of the last change to the unknot, the middle between the two samples around it; `None` if it was not seen.
+    pub fn untying_time(&self) -> Option<f64> {
+        let knotted = self.samples.iter().rposition(|s| s.knot != UNKNOT)?;
+        let untied = self.samples.get(knotted + 1)?;
+        Some(0.5 * (self.samples[knotted].time + untied.time))
+    }
+}
+
+/// Name of the unknot.
+pub const UNKNOT: &str = "0_1";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn timeline(names: &[&str]) -> Timeline {
+        let typed = |(k, n): (usize, &&str)| TypedSample {
+            sample: k,
+            time: k as f64,
+            knot: (*n).to_owned(),
+            probability: 1.0,
+        };
+        Timeline {
+            samples: names.iter().enumerate().map(typed).collect(),
+        }
+    }
+
+    #[test]
+    fn untying_is_the_last_change_to_the_unknot() {
+        let t = timeline(&["7_4", "5_2", "0_1", "3_1", "3_1", "0_1", "0_1"]);
+        assert_eq!(t.untying_time(), Some(4.5));
+        assert_eq!(t.sequence(), ["7_4", "5_2", "0_1", "3_1", "0_1"]);
+        assert_eq!(timeline(&["3_1", "3_1"]).untying_time(), None);
+        assert_eq!(timeline(&["0_1"]).untying_time(), None);
+    }
+}
