@@ -1,2 +1,29 @@
-//! The commands of the topo workspace.
-fn main() {}
+//! The commands of the topo workspace: `cargo xtask --help` lists them.
+
+mod cli;
+mod commands;
+mod compute;
+mod data;
+mod error;
+mod figures;
+mod gallery;
+mod interrupt;
+mod plot;
+mod progress;
+mod provenance;
+#[cfg(test)]
+mod synthetic;
+
+use clap::Parser;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    // A closed pipe (`| head`) is no reason to panic, and so errors of writing are dropped.
+    match commands::dispatch(cli::Cli::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(e) => {
+            eprintln!("error: {e}");
+            ExitCode::from(e.exit_code())
+        }
+    }
+}

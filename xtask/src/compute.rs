@@ -1,0 +1,177 @@
+//! Where commands meet the physics: the tables behind figures, and a user's own scene.
+
+use crate::error::XtaskError;
+use crate::figures::Quality;
+use crate::interrupt;
+use crate::progress::Progress;
+use crate::provenance::Provenance;
+use std::path::Path;
+use std::sync::OnceLock;
+use std::time::Instant;
+use topo_analysis::{
+    AnalysisError, Cuts, ElasticScene, Event, Preset, SweepReport, SweepSettings, run_sweep,
+    tight_shapes, with_jobs, write_knots,
+};
+use topo_core::Interrupt;
+use topo_knots::KnotTable;
+
+/// The tables that figures need.
+#[derive(Debug)]
+pub struct Order<'a> {
+    /// Folder of the results.
+    pub results: &'a Path,
+    /// How much to compute.
+    pub quality: Quality,
+    /// Number of threads; 0 is one a processor.
+    pub jobs: usize,
+    /// Recompute finished runs.
+    pub fresh: bool,
+    /// Whether the elastic sweep is needed.
+    pub elastic: bool,
+    /// Whether the table of knots is needed.
+    pub knots: bool,
+}
+
+/// Computes the tables, reusing finished runs, and notes presets, seeds and times.
+pub fn tables(
+    order: &Order,
+    stop: &Interrupt,
+    provenance: &mut Provenance,
+) -> Result<(), XtaskError> {
+    let scene = ElasticScene::published(preset(order.quality));
+    let table = KnotTable::builtin();
+    provenance.presets.insert(
+        "Tolerance".to_owned(),
+        format!("{} h", scene.accuracy.tolerance),
+    );
+    provenance
+        .presets
+        .insert("Edges".to_owned(), scene.rod.n_edges.to_string());
+    provenance
+        .presets
+        .insert("Cuts".to_owned(), String::from(scene.cuts));
+    provenance
+        .presets
+        .insert("Seed".to_owned(), scene.seed.to_string());
+    if order.knots {
+        let start = Instant::now();
+        let mut names: Vec<String> = scene.cases(&table)?.into_iter().map(|c| c.knot).collect();
+        names.dedup();
+        let progress = Progress::start("knots", names.len());
+        let told = |event: Event<'_>| {
+            if let Event::Knot { name, .. } = event {
+                progress.done(name);
+            }
+        };
+        let shapes = with_jobs(order.jobs, || {
+            tight_shapes(&names, &table, &scene.tighten, order.results, stop, &told)
+        })??;
+        progress.finish();
+        interrupt::check(stop)?;
+        write_knots(&shapes, &table, order.results)?;
+        provenance
+            .wall_seconds
+            .insert("knots".to_owned(), start.elapsed().as_secs_f64());
+    }
+    if order.elastic {
+        let settings = SweepSettings {
+            out: order.results.to_owned(),
+            jobs: order.jobs,
+            fresh: order.fresh,
+            interrupt: stop.clone(),
+        };
+        let start = Instant::now();
+        let report = sweep(&scene, &table, &settings)?;
+        provenance
+            .wall_seconds
+            .insert("elastic sweep".to_owned(), start.elapsed().as_secs_f64());
+        let runs = format!("{} computed, {} reused", report.n_computed, report.n_reused);
+        provenance.presets.insert("Elastic runs".to_owned(), runs);
+    }
+    Ok(())
+}
+
+/// Runs a user's scene and prints its table.
+pub fn scene(file: &Path, cuts: Option<&str>, settings: &SweepSettings) -> Result<(), XtaskError> {
+    let mut scene = ElasticScene::read(file)?;
+    if let Some(text) = cuts {
+        scene.cuts = Cuts::try_from(text.to_owned()).map_err(|remedy| XtaskError::Argument {
+            key: "--cuts",
+            value: text.to_owned(),
+            remedy,
+        })?;
+    }
+    let report = sweep(&scene, &KnotTable::builtin(), settings)?;
+    println!("knot    theta'h     cut    E/E0      Wr     t50     t90     t95     t99  untied");
+    let cell = |t: Option<f64>| t.map_or_else(|| format!("{:>7}", "-"), |t| format!("{t:7.3}"));
+    for r in &report.rows {
+        println!(
+            "{:6} {:+8.3} {:7.4} {:7.4} {:+7.3} {} {} {} {} {}",
+            r.knot,
+            r.twist,
+            r.cut,
+            r.energy,
+            r.writhe,
+            cell(r.t50),
+            cell(r.t90),
+            cell(r.t95),
+            cell(r.t99),
+            cell(r.t_untie)
+        );
+        for warning in r.warnings.split(';').filter(|w| !w.is_empty()) {
+            println!("       warning: {warning}");
+        }
+    }
+    println!(
+        "written to {}",
+        ElasticScene::folder(&settings.out).display()
+    );
+    Ok(())
+}
+
+fn sweep(
+    scene: &ElasticScene,
+    table: &KnotTable,
+    settings: &SweepSettings,
+) -> Result<SweepReport, XtaskError> {
+    let progress: OnceLock<Progress> = OnceLock::new();
+    let report = run_sweep(scene, table, settings, &|event| match event {
+        Event::Begin { n_cases, n_reused } => {
+            if n_reused > 0 {
+                eprintln!("{n_reused} of {n_cases} cases are finished already");
+            }
+            progress.get_or_init(|| Progress::start("elastic", n_cases - n_reused));
+        }
+        Event::Case { name, warnings, .. } => {
+            if let Some(progress) = progress.get() {
+                progress.done(name);
+                if !warnings.is_empty() {
+                    progress.note(&format!("warning: {name}: {warnings}"));
+                }
+            }
+        }
+        _ => {}
+    })?;
+    if let Some(progress) = progress.into_inner() {
+        progress.finish();
+    }
+    if report.interrupted {
+        Err(XtaskError::Interrupted)
+    } else {
+        Ok(report)
+    }
+}
+
+fn preset(quality: Quality) -> Preset {
+    match quality {
+        Quality::Draft => Preset::Draft,
+        Quality::Standard => Preset::Standard,
+        Quality::Paper => Preset::Paper,
+    }
+}
+
+impl From<AnalysisError> for XtaskError {
+    fn from(e: AnalysisError) -> Self {
+        Self::Input(e.to_string())
+    }
+}

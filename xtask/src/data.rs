@@ -1,0 +1,323 @@
+//! The tables that figures are drawn from, read back from a results folder.
+
+use crate::error::XtaskError;
+use nalgebra::Vector3;
+use serde::Deserialize;
+use serde::de::DeserializeOwned;
+use std::path::{Path, PathBuf};
+pub use topo_analysis::{KnotRow, SweepRow as Cut};
+
+/// The 14 knots to seven crossings, in the order of the tables.
+pub const KNOTS: [&str; 14] = [
+    "3_1", "4_1", "5_1", "5_2", "6_1", "6_2", "6_3", "7_1", "7_2", "7_3", "7_4", "7_5", "7_6",
+    "7_7",
+];
+
+/// All cuts of one charged state.
+#[derive(Debug, Clone)]
+pub struct Case {
+    /// The cuts, in the order of the table; never empty.
+    pub cuts: Vec<Cut>,
+}
+
+impl Case {
+    /// The cut that stands for the case where one is needed: the first of the table.
+    pub fn first(&self) -> &Cut {
+        &self.cuts[0]
+    }
+
+    /// Folder of the case inside `elastic/`.
+    pub fn folder(&self) -> String {
+        let c = self.first();
+        format!("{}_twist{:+.2}_{}_n{}", c.knot, c.twist, c.reading, c.edges)
+    }
+
+    /// Mean, smallest and largest of a time over the cuts that have it.
+    pub fn spread(&self, time: impl Fn(&Cut) -> Option<f64>) -> Option<[f64; 3]> {
+        let times: Vec<f64> = self
+            .cuts
+            .iter()
+            .filter_map(time)
+            .filter(|t| *t > 0.0)
+            .collect();
+        if times.is_empty() {
+            return None;
+        }
+        let mean = times.iter().sum::<f64>() / times.len() as f64;
+        let (low, high) = times
+            .iter()
+            .fold((f64::MAX, f64::MIN), |(a, b), t| (a.min(*t), b.max(*t)));
+        Some([mean, low, high])
+    }
+}
+
+/// `elastic/sweep.csv`, gathered by charged state.
+#[derive(Debug, Clone)]
+pub struct Sweep {
+    /// Charged states, by knot and then twist.
+    pub cases: Vec<Case>,
+}
+
+impl Sweep {
+    /// Reads the sweep and keeps the states of one reading and resolution: those with the
+    /// most rows, so that side studies in the same table do not mix into the figures.
+    pub fn read(results: &Path) -> Result<Self, XtaskError> {
+        let path = results.join("elastic/sweep.csv");
+        let cuts: Vec<Cut> = read_csv(&path)?;
+        let key = |c: &Cut| (c.reading.clone(), c.edges);
+        let count = |k: &(String, usize)| cuts.iter().filter(|c| key(c) == *k).count();
+        let Some(main) = cuts.iter().map(key).max_by_key(count) else {
+            return Err(XtaskError::Table {
+                path,
+                reason: "no rows".to_owned(),
+            });
+        };
+        let mut cases: Vec<Case> = Vec::new();
+        for cut in cuts.into_iter().filter(|c| key(c) == main) {
+            let same = |c: &&mut Case| {
+                c.first().knot == cut.knot && (c.first().twist - cut.twist).abs() < 1e-9
+            };
+            match cases.iter_mut().find(same) {
+                Some(case) => case.cuts.push(cut),
+                None => cases.push(Case { cuts: vec![cut] }),
+            }
+        }
+        let rank = |knot: &str| KNOTS.iter().position(|k| *k == knot).unwrap_or(KNOTS.len());
+        cases.sort_by(|a, b| {
+            let (a, b) = (a.first(), b.first());
+            (rank(&a.knot), &a.knot)
+                .cmp(&(rank(&b.knot), &b.knot))
+                .then(a.twist.total_cmp(&b.twist))
+        });
+        Ok(Self { cases })
+    }
+
+    /// Names of the knots, in order.
+    pub fn knots(&self) -> Vec<&str> {
+        let mut names: Vec<&str> = self.cases.iter().map(|c| c.first().knot.as_str()).collect();
+        names.dedup();
+        names
+    }
+
+    /// Twist densities, in order.
+    pub fn twists(&self) -> Vec<f64> {
+        let mut twists: Vec<f64> = self.cases.iter().map(|c| c.first().twist).collect();
+        twists.sort_by(f64::total_cmp);
+        twists.dedup_by(|a, b| (*a - *b).abs() < 1e-9);
+        twists
+    }
+
+    /// States of one knot, by twist.
+    pub fn of(&self, knot: &str) -> Vec<&Case> {
+        self.cases
+            .iter()
+            .filter(|c| c.first().knot == knot)
+            .collect()
+    }
+
+    /// The state of a knot at a twist.
+    pub fn at(&self, knot: &str, twist: f64) -> Option<&Case> {
+        self.of(knot)
+            .into_iter()
+            .find(|c| (c.first().twist - twist).abs() < 1e-9)
+    }
+}
+
+/// A vertex of `charged.csv` or `snapshots.csv`: lengths in h, density in E_b h^2.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+struct Vertex {
+    #[serde(default)]
+    cut: f64,
+    #[serde(default)]
+    time: f64,
+    #[serde(default)]
+    s: f64,
+    x: f64,
+    y: f64,
+    z: f64,
+    #[serde(default)]
+    energy_density: f64,
+}
+
+/// A curve with its arc length and energy density.
+#[derive(Debug, Clone, Default)]
+pub struct Curve {
+    /// Arc length of the vertices.
+    pub s: Vec<f64>,
+    /// Vertices.
+    pub points: Vec<Vector3<f64>>,
+    /// Energy density at the vertices.
+    pub density: Vec<f64>,
+}
+
+impl Curve {
+    /// Reads `charged.csv` of a case, or a knot's `x,y,z`.
+    pub fn read(path: &Path) -> Result<Self, XtaskError> {
+        let mut curve = Self::default();
+        for v in read_csv::<Vertex>(path)? {
+            curve.push(&v);
+        }
+        if curve.points.len() < 3 {
+            let reason = format!("{} vertices, at least 3 are needed", curve.points.len());
+            return Err(XtaskError::Table {
+                path: path.to_owned(),
+                reason,
+            });
+        }
+        Ok(curve)
+    }
+
+    fn push(&mut self, v: &Vertex) {
+        self.s.push(v.s);
+        self.points.push(Vector3::new(v.x, v.y, v.z));
+        self.density.push(v.energy_density);
+    }
+}
+
+/// An open curve at a time of a discharge.
+#[derive(Debug, Clone)]
+pub struct Snapshot {
+    /// Place of the cut.
+    pub cut: f64,
+    /// Time in T0.
+    pub time: f64,
+    /// The curve.
+    pub curve: Curve,
+}
+
+/// Reads `snapshots.csv`, in order of the file.
+pub fn snapshots(path: &Path) -> Result<Vec<Snapshot>, XtaskError> {
+    let mut shots: Vec<Snapshot> = Vec::new();
+    for v in read_csv::<Vertex>(path)? {
+        match shots.last_mut() {
+            Some(s) if s.cut == v.cut && s.time == v.time => s.curve.push(&v),
+            _ => {
+                let mut curve = Curve::default();
+                curve.push(&v);
+                shots.push(Snapshot {
+                    cut: v.cut,
+                    time: v.time,
+                    curve,
+                });
+            }
+        }
+    }
+    shots.retain(|s| s.curve.points.len() >= 3);
+    Ok(shots)
+}
+
+/// A row of `series.csv` as far as figures need it.
+#[derive(Debug, Clone, Deserialize)]
+pub struct Moment {
+    /// Place of the cut.
+    pub cut: f64,
+    /// Time in T0.
+    pub time: f64,
+    /// Elastic energy in E0.
+    pub energy: f64,
+    /// Most probable knot type of the closed-up curve, empty where it was not determined.
+    pub knot: Option<String>,
+}
+
+/// Reads `series.csv`.
+pub fn series(path: &Path) -> Result<Vec<Moment>, XtaskError> {
+    read_csv(path)
+}
+
+/// Reads a CSV file with a header.
+pub fn read_csv<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>, XtaskError> {
+    let file = std::fs::File::open(path).map_err(|source| match source.kind() {
+        std::io::ErrorKind::NotFound => XtaskError::Missing {
+            path: path.to_owned(),
+            remedy: "run `cargo xtask figures` to compute it, or name the folder by --out",
+        },
+        _ => XtaskError::File {
+            path: path.to_owned(),
+            source,
+        },
+    })?;
+    let rows = csv::Reader::from_reader(std::io::BufReader::new(file)).into_deserialize();
+    rows.collect::<Result<_, _>>()
+        .map_err(|e| XtaskError::Table {
+            path: path.to_owned(),
+            reason: e.to_string(),
+        })
+}
+
+/// Writes a file whole or not at all: beside its place first, then renamed.
+pub fn write(path: &Path, bytes: &[u8]) -> Result<(), XtaskError> {
+    let fail = |source| XtaskError::File {
+        path: PathBuf::from(path),
+        source,
+    };
+    let folder = path.parent().unwrap_or(Path::new("."));
+    std::fs::create_dir_all(folder).map_err(fail)?;
+    let mut builder = tempfile::Builder::new();
+    // Results are for others to read, unlike most temporary files.
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o644));
+    let mut file = builder.tempfile_in(folder).map_err(fail)?;
+    std::io::Write::write_all(&mut file, bytes).map_err(fail)?;
+    file.as_file().sync_all().map_err(fail)?;
+    file.persist(path).map_err(|e| fail(e.error))?;
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const HEADER: &str = "knot,twist,cut,reading,edges,energy,bend,twist_energy,stretch,writhe,total_twist,t50,t90,t95,t99,t_untie,link_drift,min_distance_over_contact,steps,rejected,cpu_seconds,warnings";
+
+    fn row(knot: &str, twist: f64, reading: &str, t99: &str) -> String {
+        format!(
+            "{knot},{twist},0.1,{reading},200,1,0.5,0.4,0.1,3.4,1,0.5,1,2,{t99},,1e-12,0.98,100,2,0.5,"
+        )
+    }
+
+    fn folder(rows: &[String]) -> tempfile::TempDir {
+        let dir = tempfile::tempdir().unwrap();
+        let text = format!("{HEADER}\n{}\n", rows.join("\n"));
+        write(&dir.path().join("elastic/sweep.csv"), text.as_bytes()).unwrap();
+        dir
+    }
+
+    #[test]
+    fn cuts_are_gathered_and_side_studies_left_out() {
+        let dir = folder(&[
+            row("7_4", 0.0, "shrunk", "6"),
+            row("7_4", 0.0, "shrunk", "18"),
+            row("3_1", -0.25, "shrunk", ""),
+            row("3_1", 0.0, "tight", "9"),
+        ]);
+        let sweep = Sweep::read(dir.path()).unwrap();
+        assert_eq!(sweep.knots(), ["3_1", "7_4"]);
+        assert_eq!(sweep.twists(), [-0.25, 0.0]);
+        let case = sweep.at("7_4", 0.0).unwrap();
+        assert_eq!(case.folder(), "7_4_twist+0.00_shrunk_n200");
+        assert_eq!(case.spread(|c| c.t99), Some([12.0, 6.0, 18.0]));
+        assert_eq!(sweep.at("3_1", -0.25).unwrap().spread(|c| c.t99), None);
+    }
+
+    #[test]
+    fn bad_tables_name_file_and_place() {
+        let dir = folder(&[row("3_1", 0.0, "shrunk", "soon")]);
+        let e = Sweep::read(dir.path()).unwrap_err();
+        assert!(
+            e.to_string().contains("sweep.csv") && e.to_string().contains("line: 2"),
+            "{e}"
+        );
+        assert_eq!(e.exit_code(), 2);
+        let e = Sweep::read(&dir.path().join("nowhere")).unwrap_err();
+        assert!(matches!(e, XtaskError::Missing { .. }));
+    }
+
+    #[test]
+    fn write_refuses_a_folder_that_is_a_file() {
+        let dir = tempfile::tempdir().unwrap();
+        let file = dir.path().join("a");
+        write(&file, b"1").unwrap();
+        assert!(write(&file.join("b"), b"2").is_err());
+        assert_eq!(std::fs::read(&file).unwrap(), b"1");
+    }
+}

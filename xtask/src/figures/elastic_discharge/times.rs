@@ -1,0 +1,174 @@
+//! Panels (d) and (e): the time to release 99 %, against twist and for all states.
+
+use super::super::series::{OTHERS, Table, color, labels, line, log_bounds};
+use super::{drawing_order, others_note, twist_axis};
+use crate::data::{Case, Sweep};
+use crate::plot::canvas::{Canvas, Style};
+use crate::plot::color::Scale;
+use crate::plot::panel::{Axis, Panel};
+use crate::plot::text;
+use kuva::prelude::{LinePlot, Plot, ScatterPlot};
+
+const SIZE: [f64; 2] = [266.0, 178.0];
+
+fn t99(case: &Case) -> Option<[f64; 3]> {
+    case.spread(|c| c.t99)
+}
+
+fn time_axis(sweep: &Sweep) -> Axis {
+    let all = sweep.cases.iter().filter_map(t99).flatten();
+    Axis::log("Discharge time *t*_{99} / *T*_{0}", log_bounds(all, 1.25))
+}
+
+/// Time against twist by knot.
+pub fn against_twist(sweep: &Sweep, canvas: &mut Canvas, at: [f64; 2], table: &mut Table) {
+    let panel = Panel {
+        at,
+        size: SIZE,
+        x: twist_axis(sweep),
+        y: time_axis(sweep),
+    };
+    let mut plots = Vec::new();
+    let mut names = Vec::new();
+    for knot in drawing_order(sweep) {
+        let ink = color(knot).unwrap_or(OTHERS);
+        let mut points = Vec::new();
+        for case in sweep.of(knot) {
+            let Some([mean, low, high]) = t99(case) else {
+                continue;
+            };
+            let x = case.first().twist;
+            points.push((x, mean));
+            table.row(&["d", knot], &[x, x, mean, low, high]);
+            if color(knot).is_some() && high > low * 1.005 {
+                plots.push(bar(x, low, high, ink, 1.0));
+            }
+        }
+        let peak = points.iter().min_by(|a, b| a.0.abs().total_cmp(&b.0.abs()));
+        if let (Some(ink), Some((x, y))) = (color(knot), peak) {
+            names.push((panel.place(*x, *y)[1], text::knot_name(knot), ink));
+        }
+        plots.push(line(
+            points,
+            ink,
+            if color(knot).is_some() { 1.8 } else { 1.0 },
+        ));
+    }
+    panel.draw(canvas, plots, &[]);
+    let x = panel.place(0.0, 1.0)[0] + 42.0;
+    for (y, _, ink) in &names {
+        canvas.line([x - 40.0, *y], [x - 16.0, *y], ink, 0.6);
+    }
+    labels(canvas, x - 12.0, names);
+    others_note(canvas, &panel, sweep);
+}
+
+/// All states: knots side by side, in each from the most negative to the most positive twist.
+pub fn all(sweep: &Sweep, canvas: &mut Canvas, at: [f64; 2], table: &mut Table) {
+    let knots = sweep.knots();
+    let n = knots.len() as f64;
+    let size = [SIZE[0] + 16.0 - 44.0, SIZE[1]];
+    let panel = Panel {
+        at,
+        size,
+        x: Axis::linear("Knot", (0.0, n), 1.0).bare(),
+        y: time_axis(sweep),
+    };
+    let (low_twist, high_twist) = super::bounds(sweep.twists());
+    let scale = Scale::viridis(low_twist, high_twist);
+    let mut plots = Vec::new();
+    for (k, knot) in knots.iter().enumerate() {
+        for case in sweep.of(knot) {
+            let Some([mean, low, high]) = t99(case) else {
+                continue;
+            };
+            let twist = case.first().twist;
+            let place = 0.1 + 0.8 * (twist - low_twist) / (high_twist - low_twist).max(1e-9);
+            let x = k as f64 + place;
+            table.row(&["e", knot], &[twist, x, mean, low, high]);
+            let ink = scale.css(twist);
+            if high > low * 1.005 {
+                plots.push(bar(x, low, high, &ink, 0.9));
+            }
+            let dot = ScatterPlot::new()
+                .with_data(vec![(x, mean)])
+                .with_color(ink)
+                .with_size(1.9);
+            plots.push(Plot::Scatter(dot));
+        }
+    }
+    // Thin rules part the knots.
+    for k in 1..knots.len() {
+        let (low, high) = panel.y.range;
+        plots.insert(
+            0,
+            line(vec![(k as f64, low), (k as f64, high)], "#e6e8eb", 0.6),
+        );
+    }
+    panel.draw(canvas, plots, &[]);
+    for (k, knot) in knots.iter().enumerate() {
+        let x = at[0] + size[0] * (k as f64 + 0.5) / n;
+        let name = text::knot_name(knot);
+        canvas.text(
+            x,
+            at[1] + size[1] + 12.0,
+            &name,
+            Style::default().middle().size(8.5),
+        );
+    }
+    let ticks = [low_twist, (low_twist + high_twist) / 2.0, high_twist];
+    let bar_at = [at[0] + size[0] + 12.0, at[1] + 20.0];
+    canvas.color_bar(bar_at, [8.0, size[1] - 40.0], &scale, &ticks, "Twist θ′*h*");
+}
+
+fn bar(x: f64, low: f64, high: f64, ink: &str, width: f64) -> Plot {
+    let line = LinePlot::new().with_data(vec![(x, low), (x, high)]);
+    Plot::Line(line.with_color(ink).with_stroke_width(width))
+}
+
+/// What the times say.
+pub fn finding(sweep: &Sweep) -> String {
+    let zero = |knot: &str| {
+        let cases = sweep.of(knot);
+        let near = cases
+            .into_iter()
+            .min_by(|a, b| a.first().twist.abs().total_cmp(&b.first().twist.abs()))?;
+        Some(t99(near)?[0])
+    };
+    let mut slow: Vec<(&str, f64)> = sweep
+        .knots()
+        .into_iter()
+        .filter_map(|k| Some((k, zero(k)?)))
+        .collect();
+    slow.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let ranked: Vec<String> = slow
+        .iter()
+        .take(4)
+        .map(|(k, t)| format!("{} {}", text::knot_name(k), text::number(*t, 1)))
+        .collect();
+    let n = sweep.cases.len();
+    let n_done = sweep.cases.iter().filter(|c| t99(c).is_some()).count();
+    let tied: Vec<[f64; 3]> = sweep
+        .cases
+        .iter()
+        .filter(|c| c.cuts.len() > 1)
+        .filter_map(t99)
+        .collect();
+    let spread = tied
+        .iter()
+        .map(|[_, low, high]| high / low)
+        .fold(1.0, f64::max);
+    let ties = if tied.is_empty() {
+        String::new()
+    } else {
+        format!(
+            " {} states have near-tied cuts; the time depends on which, by up to a factor {}.",
+            tied.len(),
+            text::number(spread, 2)
+        )
+    };
+    format!(
+        "{n_done} of {n} discharges reach 99 %. Slowest knots at zero twist (t99 / T₀): {}.{ties}",
+        ranked.join(", ")
+    )
+}

@@ -1,0 +1,161 @@
+//! What the panels share: the chosen knots and their colours, lines, ranges, tidy labels.
+
+use crate::plot::canvas::{Canvas, Style};
+use crate::plot::color::{BLUE, GREEN, PURPLE, VERMILION};
+use kuva::prelude::{LinePlot, Plot};
+use std::fmt::Write;
+
+/// Knots that are picked out, with their colours; the others stay grey.
+pub const CHOSEN: [(&str, &str); 4] = [
+    ("3_1", BLUE),
+    ("4_1", VERMILION),
+    ("7_1", GREEN),
+    ("7_4", PURPLE),
+];
+
+/// Grey of the knots that are not picked out.
+pub const OTHERS: &str = "#c3c8ce";
+
+/// Colour of a picked-out knot.
+pub fn color(knot: &str) -> Option<&'static str> {
+    CHOSEN.iter().find(|(k, _)| *k == knot).map(|(_, c)| *c)
+}
+
+/// A line.
+pub fn line(points: Vec<(f64, f64)>, color: &str, width: f64) -> Plot {
+    Plot::Line(
+        LinePlot::new()
+            .with_data(points)
+            .with_color(color)
+            .with_stroke_width(width),
+    )
+}
+
+/// Smallest and largest of finite values, or (0, 1) when there are none.
+pub fn bounds(values: impl IntoIterator<Item = f64>) -> (f64, f64) {
+    let finite = values.into_iter().filter(|v| v.is_finite());
+    let (low, high) = finite.fold((f64::MAX, f64::MIN), |(a, b), v| (a.min(v), b.max(v)));
+    if low <= high { (low, high) } else { (0.0, 1.0) }
+}
+
+/// Positive range for a logarithmic axis, a little wider than the data.
+pub fn log_bounds(values: impl IntoIterator<Item = f64>, room: f64) -> (f64, f64) {
+    let (low, high) = bounds(values.into_iter().filter(|v| *v > 0.0));
+    if low > 0.0 {
+        (low / room, high * room)
+    } else {
+        (0.1, 1.0)
+    }
+}
+
+/// A step of 1, 2 or 5 times a power of ten that divides a span into about `n` parts.
+pub fn step(span: f64, n: f64) -> f64 {
+    let raw = (span / n).max(f64::MIN_POSITIVE);
+    let power = 10.0_f64.powf(raw.log10().floor());
+    let multiple = [1.0, 2.0, 5.0, 10.0]
+        .into_iter()
+        .find(|m| m * power >= raw * 0.999);
+    power * multiple.unwrap_or(10.0)
+}
+
+/// Values from `low` to `high` at multiples of `step`.
+pub fn ticks(low: f64, high: f64, step: f64) -> Vec<f64> {
+    let first = (low / step - 1e-9).ceil() as i64;
+    let last = (high / step + 1e-9).floor() as i64;
+    (first..=last.min(first + 100))
+        .map(|k| k as f64 * step)
+        .collect()
+}
+
+/// Labels to the right of `x`, each as near to its height as the others let it.
+pub fn labels(canvas: &mut Canvas, x: f64, mut items: Vec<(f64, String, &str)>) {
+    const PITCH: f64 = 10.5;
+    items.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut heights: Vec<f64> = items.iter().map(|i| i.0).collect();
+    // Neighbours push each other apart evenly; a few sweeps settle so few labels.
+    for _ in 0..200 {
+        for k in 1..heights.len() {
+            let lack = PITCH - (heights[k] - heights[k - 1]);
+            if lack > 0.0 {
+                heights[k - 1] -= lack / 2.0;
+                heights[k] += lack / 2.0;
+            }
+        }
+    }
+    for (height, (_, label, color)) in heights.iter().zip(&items) {
+        canvas.text(
+            x,
+            height + 3.2,
+            label,
+            Style::default().bold().halo().size(9.5).color(color),
+        );
+    }
+}
+
+/// A CSV text with a header.
+#[derive(Debug)]
+pub struct Table(String);
+
+impl Table {
+    /// Empty table.
+    pub fn new(header: &str) -> Self {
+        Self(format!("{header}\n"))
+    }
+
+    /// One row; texts must not hold commas.
+    pub fn row(&mut self, texts: &[&str], numbers: &[f64]) {
+        let mut cells: Vec<String> = texts.iter().map(|&t| t.to_owned()).collect();
+        cells.extend(numbers.iter().map(|v| {
+            if v.is_finite() {
+                v.to_string()
+            } else {
+                String::new()
+            }
+        }));
+        // Writing to a string cannot fail.
+        let _ = writeln!(self.0, "{}", cells.join(","));
+    }
+
+    /// The text.
+    pub fn finish(self) -> String {
+        self.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steps_are_round_and_ticks_multiples() {
+        assert_eq!(step(4.0, 4.0), 1.0);
+        assert!((step(0.9, 4.0) - 0.5).abs() < 1e-12);
+        assert_eq!(ticks(-2.0, 2.0, 1.0), [-2.0, -1.0, 0.0, 1.0, 2.0]);
+    }
+
+    #[test]
+    fn bounds_of_nothing_are_usable() {
+        assert_eq!(bounds([f64::NAN]), (0.0, 1.0));
+        assert_eq!(log_bounds([-1.0, 0.0], 2.0), (0.1, 1.0));
+        assert_eq!(log_bounds([1.0, 4.0], 2.0), (0.5, 8.0));
+    }
+
+    #[test]
+    fn labels_do_not_overlap() {
+        let mut canvas = Canvas::new(100.0, 100.0, 1.0);
+        let items = (0..4)
+            .map(|k| (50.0 + k as f64, k.to_string(), "#000000"))
+            .collect();
+        labels(&mut canvas, 10.0, items);
+        let svg = canvas.finish().unwrap().svg;
+        let ys: Vec<f64> = svg
+            .split("<text x=\"10.00\" y=\"")
+            .skip(1)
+            .map(|s| s[..s.find('"').unwrap()].parse().unwrap())
+            .collect();
+        assert!(
+            ys.len() == 4 && ys.windows(2).all(|w| w[1] - w[0] > 10.0),
+            "{ys:?}"
+        );
+    }
+}

@@ -1,0 +1,16 @@
+//! Drawing, offline and without a display: shaded tubes, panels of axes, and their composition.
+//!
+//! Reading order: [`color`] (scales), [`camera`] (how a curve is turned to the reader),
+//! [`tube`] (a curve made smooth, with its baked light), [`raster`] (its pixels),
+//! [`text`] (labels with sub- and superscripts), [`panel`] (axes), [`canvas`] (one SVG of all
+//! these), [`render`] (the SVG as PNG with the shipped fonts).
+
+pub mod camera;
+pub mod canvas;
+pub mod color;
+pub mod font;
+pub mod panel;
+pub mod raster;
+pub mod render;
+pub mod text;
+pub mod tube;

@@ -1,0 +1,124 @@
+//! `provenance.json`: which code, inputs and machine time the figures come from.
+
+use crate::data;
+use crate::error::XtaskError;
+use crate::figures::{Done, Quality};
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// Where figures come from.
+#[derive(Debug, Serialize)]
+pub struct Provenance {
+    /// Version of the workspace.
+    pub version: &'static str,
+    /// Commit, with `+changes` when files differ from it.
+    pub commit: String,
+    /// BLAKE3 hash of `Cargo.lock`.
+    pub lock_blake3: String,
+    /// Quality preset.
+    pub quality: Quality,
+    /// Presets and seeds of the runs, by name.
+    pub presets: BTreeMap<String, String>,
+    /// Wall seconds by stage.
+    pub wall_seconds: BTreeMap<String, f64>,
+    /// Warnings of the runs, each with the number of runs that gave it.
+    pub warnings: BTreeMap<String, usize>,
+}
+
+impl Provenance {
+    /// Collects what is known of the code; `root` is the workspace's folder.
+    pub fn collect(root: &Path, quality: Quality) -> Self {
+        let lock = std::fs::read(root.join("Cargo.lock"));
+        Self {
+            version: env!("CARGO_PKG_VERSION"),
+            commit: commit(root),
+            lock_blake3: lock.map_or_else(
+                |_| "unknown".to_owned(),
+                |b| blake3::hash(&b).to_hex().to_string(),
+            ),
+            quality,
+            presets: BTreeMap::new(),
+            wall_seconds: BTreeMap::new(),
+            warnings: BTreeMap::new(),
+        }
+    }
+
+    /// Adds the times of drawing.
+    pub fn drew(&mut self, done: &[Done]) {
+        for d in done {
+            self.wall_seconds
+                .insert(format!("draw {}", d.figure.name), d.seconds);
+        }
+    }
+
+    /// Counts the warnings of a table's `warnings` column, separated by `;`.
+    pub fn warn(&mut self, warnings: &str) {
+        for warning in warnings.split(';').map(str::trim).filter(|w| !w.is_empty()) {
+            *self.warnings.entry(warning.to_owned()).or_insert(0) += 1;
+        }
+    }
+
+    /// Key and value, for reading.
+    pub fn rows(&self) -> Vec<(&str, String)> {
+        let wall: f64 = self.wall_seconds.values().sum();
+        let warnings = if self.warnings.is_empty() {
+            "none".to_owned()
+        } else {
+            let each = self.warnings.iter().map(|(w, n)| format!("{w} ({n})"));
+            each.collect::<Vec<_>>().join("; ")
+        };
+        let mut rows = vec![
+            ("Version", self.version.to_owned()),
+            ("Commit", self.commit.clone()),
+            ("Lock file (BLAKE3)", self.lock_blake3.clone()),
+            ("Quality", self.quality.to_string()),
+        ];
+        rows.extend(self.presets.iter().map(|(k, v)| (k.as_str(), v.clone())));
+        rows.push(("Wall time", format!("{wall:.1} s")));
+        rows.push(("Warnings", warnings));
+        rows
+    }
+
+    /// Writes `provenance.json` into the results folder.
+    pub fn write(&self, results: &Path) -> Result<(), XtaskError> {
+        let text = serde_json::to_string_pretty(self).map_err(|e| XtaskError::Drawing {
+            reason: format!("provenance: {e}"),
+        })?;
+        data::write(&results.join("provenance.json"), text.as_bytes())
+    }
+}
+
+/// Folder of the workspace: where cargo built this program from, or the current folder when
+/// that has moved.
+pub fn workspace() -> PathBuf {
+    let built = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .parent()
+        .unwrap_or(Path::new("."));
+    if built.join("Cargo.lock").exists() {
+        built.to_owned()
+    } else {
+        PathBuf::from(".")
+    }
+}
+
+fn commit(root: &Path) -> String {
+    let git = |arguments: &[&str]| {
+        let output = Command::new("git")
+            .arg("-C")
+            .arg(root)
+            .args(arguments)
+            .output()
+            .ok()?;
+        output
+            .status
+            .success()
+            .then(|| String::from_utf8_lossy(&output.stdout).trim().to_owned())
+    };
+    match (git(&["rev-parse", "HEAD"]), git(&["status", "--porcelain"])) {
+        (Some(head), Some(changes)) if !changes.is_empty() => format!("{head}+changes"),
+        (Some(head), _) => head,
+        (None, _) => "unknown".to_owned(),
+    }
+}

@@ -1,0 +1,217 @@
+//! Made-up results in the layout of real ones, for the tests of drawing only.
+
+use crate::data::{Cut, KNOTS, KnotRow, write};
+use nalgebra::Vector3;
+use std::f64::consts::TAU;
+use std::fmt::Write;
+use std::path::Path;
+
+const N: usize = 120;
+const LENGTH: f64 = 50.0;
+
+/// Writes sweep, cases and knots into a results folder, for the first `n_knots` knots at
+/// `twists`.
+pub fn results(folder: &Path, n_knots: usize, twists: &[f64]) {
+    let mut sweep = csv::Writer::from_writer(Vec::new());
+    let mut table = csv::Writer::from_writer(Vec::new());
+    for (k, knot) in KNOTS.iter().take(n_knots).enumerate() {
+        let curve = scaled(&closed(k, 0.0), LENGTH);
+        let mut xyz = "x,y,z\n".to_owned();
+        for p in scaled(&closed(k, 0.0), 32.0 + 2.4 * k as f64) {
+            writeln!(xyz, "{},{},{}", p.x, p.y, p.z).unwrap();
+        }
+        write(&folder.join(format!("knots/{knot}.csv")), xyz.as_bytes()).unwrap();
+        table.serialize(knot_row(knot, k)).unwrap();
+        for &twist in twists {
+            let n_cuts = if k % 4 == 3 && twist.abs() < 0.6 {
+                3
+            } else {
+                1
+            };
+            for c in 0..n_cuts {
+                let cut = cut(knot, k, twist, c);
+                if c == 0 {
+                    case(folder, k, &cut, &scaled(&closed(k, twist), LENGTH));
+                }
+                sweep.serialize(cut).unwrap();
+            }
+        }
+        assert_eq!(curve.len(), N);
+    }
+    write(
+        &folder.join("elastic/sweep.csv"),
+        &sweep.into_inner().unwrap(),
+    )
+    .unwrap();
+    write(
+        &folder.join("knots/table.csv"),
+        &table.into_inner().unwrap(),
+    )
+    .unwrap();
+}
+
+fn closed(k: usize, twist: f64) -> Vec<Vector3<f64>> {
+    let p = [3.0, 4.0, 5.0, 5.0, 6.0, 6.0, 6.0][k.min(6)] + if k > 6 { 1.0 } else { 0.0 };
+    (0..N)
+        .map(|i| {
+            let a = i as f64 / N as f64 * TAU;
+            if k == 1 {
+                let r = 2.0 + (2.0 * a).cos();
+                return Vector3::new(
+                    r * (3.0 * a).cos(),
+                    r * (3.0 * a).sin(),
+                    1.4 * (4.0 * a).sin(),
+                );
+            }
+            let p = if (p as usize).is_multiple_of(2) {
+                p + 1.0
+            } else {
+                p
+            };
+            let buckle = 0.12 * twist * (a * (2.0 + k as f64 % 3.0)).sin();
+            let r = 2.3 + (p * a).cos() + buckle;
+            let y = r * (2.0 * a).sin() * (1.0 - 0.08 * twist);
+            Vector3::new(r * (2.0 * a).cos(), y, 1.1 * (p * a).sin() + 1.5 * buckle)
+        })
+        .collect()
+}
+
+fn scaled(points: &[Vector3<f64>], length: f64) -> Vec<Vector3<f64>> {
+    let n = points.len();
+    let old: f64 = (0..n)
+        .map(|i| (points[(i + 1) % n] - points[i]).norm())
+        .sum();
+    points.iter().map(|p| p * (length / old)).collect()
+}
+
+fn cut(knot: &str, k: usize, twist: f64, c: usize) -> Cut {
+    let bend = 0.03 + 0.008 * k as f64 + 0.02 * twist * twist * (1.0 + 0.1 * twist);
+    let twist_energy = 0.24 * twist * twist;
+    let slow = [
+        1.0, 0.4, 0.5, 0.6, 0.5, 0.55, 0.5, 0.7, 0.6, 0.5, 0.9, 0.5, 0.6, 0.5,
+    ][k];
+    let t99 =
+        19.0 * slow / (1.0 + 1.6 * twist * twist) * (1.0 + 0.5 * c as f64) + 1.9 + 0.1 * twist;
+    Cut {
+        knot: knot.to_owned(),
+        twist,
+        cut: 0.1 + 0.3 * c as f64,
+        reading: "shrunk".to_owned(),
+        edges: N,
+        energy: bend + twist_energy,
+        bend,
+        twist_energy,
+        stretch: 0.001,
+        writhe: 3.4 + 0.8 * twist,
+        total_twist: 8.0 * twist,
+        t50: Some(t99 / 12.0),
+        t90: Some(t99 / 3.0),
+        t95: Some(t99 / 2.0),
+        t99: Some(t99),
+        t_untie: Some(t99 / 4.0),
+        link_drift: Some(1e-12),
+        min_distance_over_contact: Some(0.97),
+        steps: 800,
+        rejected: 12,
+        cpu_seconds: 0.5,
+        warnings: String::new(),
+    }
+}
+
+fn case(folder: &Path, k: usize, cut: &Cut, curve: &[Vector3<f64>]) {
+    let name = format!(
+        "{}_twist{:+.2}_{}_n{}",
+        cut.knot, cut.twist, cut.reading, cut.edges
+    );
+    let folder = folder.join("elastic").join(name);
+    let density = |i: usize| {
+        let a = i as f64 / N as f64 * TAU;
+        0.3 * cut.twist * cut.twist
+            + 0.05
+            + 0.16 * (1.0 + ((k % 5 + 2) as f64 * a).cos()) * (1.0 + 0.3 * cut.twist)
+    };
+    let mut charged = "s,x,y,z,twist,energy_density\n".to_owned();
+    for (i, p) in curve.iter().enumerate() {
+        let s = i as f64 * LENGTH / N as f64;
+        writeln!(
+            charged,
+            "{s},{},{},{},{},{}",
+            p.x,
+            p.y,
+            p.z,
+            cut.twist,
+            density(i)
+        )
+        .unwrap();
+    }
+    write(&folder.join("charged.csv"), charged.as_bytes()).unwrap();
+
+    let mut series = "cut,time,energy,bend,twist_energy,stretch,contact_energy,dissipated_viscosity,dissipated_twist,dissipated_friction,work,writhe,total_twist,n_contacts,min_distance,end_to_end,knot,knot_probability\n".to_owned();
+    let t99 = cut.t99.unwrap();
+    let path = ["7_4", "5_2", "3_1", "0_1"];
+    for step in 0..150 {
+        let t = if step == 0 {
+            0.0
+        } else {
+            1e-3 * 10.0_f64.powf(step as f64 / 149.0 * 4.6)
+        };
+        let e = cut.energy * (0.5 * (-t / t99 * 14.0).exp() + 0.5 * (-t / t99 * 4.0).exp());
+        let stage = [0.03, 0.09, 0.26].iter().filter(|f| t > *f * t99).count();
+        let knot = if k != 10 {
+            if stage < 2 { cut.knot.as_str() } else { "0_1" }
+        } else {
+            path[stage]
+        };
+        let knot = if step % 3 == 0 { knot } else { "" };
+        writeln!(
+            series,
+            "{},{t},{e},{e},0,0,0,0,0,0,0,1,1,3,1.9,4,{knot},0.9",
+            cut.cut
+        )
+        .unwrap();
+    }
+    write(&folder.join("series.csv"), series.as_bytes()).unwrap();
+
+    let mut shots = "cut,time,s,x,y,z,energy_density\n".to_owned();
+    for shot in 0..10 {
+        let f = shot as f64 / 9.0;
+        let t = t99 * f.powi(3) * 1.2;
+        for (i, p) in curve.iter().enumerate() {
+            let s = i as f64 * LENGTH / N as f64;
+            let line = Vector3::new(s - LENGTH / 2.0, 1.5 * (0.1 * s).sin(), 0.0);
+            let q = p * (1.0 - f) + line * f;
+            writeln!(
+                shots,
+                "{},{t},{s},{},{},{},{}",
+                cut.cut,
+                q.x,
+                q.y,
+                q.z,
+                density(i) * (1.0 - f)
+            )
+            .unwrap();
+        }
+    }
+    write(&folder.join("snapshots.csv"), shots.as_bytes()).unwrap();
+    write(&folder.join("run.json"), b"{\"warnings\":[]}").unwrap();
+}
+
+fn knot_row(knot: &str, k: usize) -> KnotRow {
+    let reference = 32.74 + 2.4 * k as f64;
+    let excess = 0.12 + 0.05 * (k % 5) as f64;
+    KnotRow {
+        knot: knot.to_owned(),
+        vertices: 320 + 8 * k,
+        length_over_radius: reference * (1.0 + excess / 100.0),
+        reference: Some(reference),
+        excess_percent: Some(excess),
+        writhe: 3.4 - 0.9 * k as f64,
+        average_crossing_number: 4.3 + 0.7 * k as f64,
+        struts: 150 + 10 * k,
+        kinks: k,
+        alexander: "1 -1 1".to_owned(),
+        determinant: 3 + 2 * k as u64,
+        signature: -2 + (k % 4) as i32,
+        cpu_seconds: 1.0,
+    }
+}
