@@ -201,3 +201,14 @@ fn bad_chains_are_refused() {
         "0_1"
     );
 }
+
+proptest::proptest! {
+    #[test]
+    fn reduction_keeps_the_invariants_of_random_polygons(
+        raw in proptest::collection::vec(proptest::array::uniform3(-1.0..1.0_f64), 8..40),
+    ) {
+        let x: Vec<V> = raw.into_iter().map(V::from).collect();
+        let kind = identify(&x, &KnotTable::builtin()).expect("a curve in general position");
+        proptest::prop_assert_eq!(kind.invariants, Invariants::of(&x).expect("general position"));
+    }
+}
