@@ -63,6 +63,7 @@ mod tests {
         let entry = table.get("3_1").expect("known");
         let settings = TightenSettings {
             n_kicks: 0,
+            n_kicks_a_start: 0,
             n_variants: 0,
             ..TightenSettings::draft()
         };

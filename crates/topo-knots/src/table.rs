@@ -34,6 +34,8 @@ pub struct KnotEntry {
     pub name: String,
     /// Braid word whose closure is the knot; may be empty if a start curve is given.
     pub braid: Vec<i32>,
+    /// Further words of the same knot, from whose closures tightening starts too.
+    pub other_braids: Vec<Vec<i32>>,
     /// Least number of crossings of a diagram.
     pub crossing_number: u32,
     /// Whether the mirror image is another knot.
@@ -56,6 +58,8 @@ struct File {
     chirality: Chirality,
     #[serde(default)]
     braid: Vec<i32>,
+    #[serde(default)]
+    other_braids: Vec<Vec<i32>>,
     polygon: Option<PathBuf>,
     fourier: Option<PathBuf>,
     invariants: FileInvariants,
@@ -144,6 +148,9 @@ impl KnotEntry {
             check_word(&file.braid)
                 .map_err(|e| fault(format!("`braid` = {:?}: {e}", file.braid)))?;
         }
+        for word in &file.other_braids {
+            check_word(word).map_err(|e| fault(format!("`other_braids`: {word:?}: {e}")))?;
+        }
         let start = match (&file.polygon, &file.fourier) {
             (Some(_), Some(_)) => {
                 return Err(fault("give `polygon` or `fourier`, not both".to_owned()));
@@ -164,6 +171,7 @@ impl KnotEntry {
         Ok(Self {
             name: file.name,
             braid: file.braid,
+            other_braids: file.other_braids,
             crossing_number: file.crossing_number,
             chirality: file.chirality,
             invariants: Invariants {
@@ -185,7 +193,8 @@ impl KnotEntry {
         };
         Self {
             name,
-            braid: self.braid.iter().map(|g| -g).collect(),
+            braid: negated(&self.braid),
+            other_braids: self.other_braids.iter().map(|word| negated(word)).collect(),
             invariants: self.invariants.mirror(),
             start: self.start.as_ref().map(StartCurve::mirror),
             ..self.clone()
@@ -352,6 +361,10 @@ impl KnotTable {
     pub fn is_empty(&self) -> bool {
         self.entries.is_empty()
     }
+}
+
+fn negated(word: &[i32]) -> Vec<i32> {
+    word.iter().map(|g| -g).collect()
 }
 
 fn is_toml(path: &Path) -> bool {

@@ -12,17 +12,21 @@ mod settings;
 pub use certificate::Certificate;
 pub use settings::TightenSettings;
 
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
 use serde::{Deserialize, Serialize};
 use topo_core::Polyline;
 
 use crate::moebius::relax_moebius;
-use crate::{Invariants, KnotEntry, KnotError, thickness};
+use crate::{Invariants, KnotEntry, KnotError, closed_braid, thickness};
 use cpu::CpuClock;
 use level::{Level, tighten_level};
 
 /// Vertices and steps of the descent of the Moebius energy that gives the second start.
 const MOEBIUS_EDGES: usize = 320;
 const MOEBIUS_STEPS: usize = 120;
+/// Cancelling pairs of generators put into a word to vary its embedding.
+const N_PADS: usize = 2;
 
 /// A tight knot with the evidence for it.
 ///
@@ -75,21 +79,48 @@ impl TightKnot {
     }
 }
 
-/// Tightens a knot of the table from the starts that serve it: its curve or closed braid, plain and rounded.
+/// Tightens a knot of the table from the starts that serve it: its curve or closed braid, plain and rounded, the closures of
+/// its other words, and of random words of the same braid.
 ///
 /// # Errors
-/// As [`tighten`], and [`KnotError::Mismatch`] if the start contradicts the invariants of the entry.
+/// As [`tighten`], and [`KnotError::Mismatch`] if a start contradicts the invariants of the entry.
 pub fn tighten_entry(
     entry: &KnotEntry,
     settings: &TightenSettings,
 ) -> Result<TightKnot, KnotError> {
     let clock = CpuClock::start();
+    settings.check()?;
     let plain = entry.start_curve()?;
-    entry.verify(&plain)?;
     let round = relax_moebius(&plain, MOEBIUS_EDGES, MOEBIUS_STEPS)?;
-    let mut tight = tighten(&entry.name, &[plain, round], settings)?;
+    let mut starts = vec![plain, round];
+    for word in &entry.other_braids {
+        starts.push(closed_braid(word)?);
+    }
+    let mut rng = Pcg64::seed_from_u64(settings.seed);
+    for _ in 0..settings.n_variants {
+        if !entry.braid.is_empty() {
+            starts.push(closed_braid(&padded(&entry.braid, &mut rng))?);
+        }
+    }
+    for start in &starts {
+        entry.verify(start)?;
+    }
+    let mut tight = tighten(&entry.name, &starts, settings)?;
     tight.cpu_seconds = clock.seconds();
     Ok(tight)
+}
+
+/// The word with pairs of a generator and its inverse put in at random places: the same braid, embedded with detours.
+fn padded(word: &[i32], rng: &mut Pcg64) -> Vec<i32> {
+    let largest = word.iter().map(|g| g.abs()).max().unwrap_or(1);
+    let mut padded = word.to_vec();
+    for _ in 0..N_PADS {
+        let sign = if rng.random_bool(0.5) { 1 } else { -1 };
+        let generator = sign * rng.random_range(1..=largest);
+        let place = rng.random_range(0..=padded.len());
+        padded.splice(place..place, [generator, -generator]);
+    }
+    padded
 }
 
 /// Tightens a closed curve, given in one or more embeddings of the same knot type; the shortest result wins.
@@ -123,6 +154,7 @@ pub fn tighten(
     for per_unit in settings.levels() {
         let n = ((per_unit * curve.length() / thickness(&curve).tau).round() as usize).max(16);
         let level = Level {
+            weights: [1.0; 3],
             damping: 0.05,
             curvature_damping: 0.1,
             tolerance: settings.tolerance,
@@ -175,3 +207,6 @@ fn check_type(
         found,
     })
 }
+
+#[cfg(test)]
+mod tests;

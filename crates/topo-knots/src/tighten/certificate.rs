@@ -58,6 +58,7 @@ impl Certificate {
         let mut tension = vec![0.0; flat.len()];
         Hessian {
             stencil: [2.0 / h, -1.0 / h, 0.0],
+            weights: [1.0; 3],
         }
         .multiply(&flat, &mut tension);
         rows.iter_mut().for_each(|row| row.bound = 0.0);
@@ -66,6 +67,7 @@ impl Certificate {
         let residual = qp::solve(
             Hessian {
                 stencil: [1.0, 0.0, 0.0],
+                weights: [1.0; 3],
             },
             &tension,
             &rows,

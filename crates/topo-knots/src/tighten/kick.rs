@@ -1,4 +1,4 @@
-//! Smooth random displacements that lift a curve off symmetric saddle points.
+//! Random moves that lead from a tight curve to another basin: smooth kicks, and squeezing.
 
 use std::f64::consts::TAU;
 
@@ -6,6 +6,7 @@ use rand::RngExt;
 use rand_pcg::Pcg64;
 use topo_core::Polyline;
 
+use super::level::{Level, tighten_level};
 use crate::V;
 
 /// Displaces a closed curve by a random sum of its first harmonics so that the largest displacement is `amplitude`.
@@ -36,4 +37,27 @@ pub(crate) fn kick(curve: &Polyline, amplitude: f64, rng: &mut Pcg64) -> Option<
         .zip(&shift)
         .map(|(x, s)| x + s * (amplitude / largest));
     Polyline::new(moved.collect(), true).ok()
+}
+
+/// Squeezes a closed curve: some steps of tightening under a tension that depends on the direction in space.
+///
+/// The tube stays legal, so the type is kept, while the shape moves much further than by a kick.
+pub(crate) fn squeeze(curve: &Polyline, rng: &mut Pcg64) -> Option<Polyline> {
+    let mut random = || rng.random_range(-1.0..1.0);
+    let axis = nalgebra::Unit::new_normalize(V::new(random(), random(), random()));
+    let turn = nalgebra::Rotation3::from_axis_angle(&axis, std::f64::consts::PI * random());
+    let strength = 1.5 + 1.5 * (random() + 1.0);
+    let level = Level {
+        damping: 0.02,
+        curvature_damping: 0.1,
+        weights: [strength, 1.0, 1.0 / strength],
+        tolerance: 1e-4,
+        rest: 0.0,
+        enough: 0.0,
+        max_steps: 12,
+    };
+    let turned = curve.vertices().iter().map(|x| turn * x);
+    let turned = Polyline::new(turned.collect(), true).ok()?;
+    let n = turned.n_edges();
+    tighten_level(&turned, &level)?.last.resampled(n).ok()
 }

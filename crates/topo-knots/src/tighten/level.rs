@@ -13,6 +13,8 @@ pub(crate) struct Level {
     pub damping: f64,
     /// Proximal weight on changes of curvature: without it vertices fold in a limit cycle.
     pub curvature_damping: f64,
+    /// Tension along each axis; all 1 to tighten, others to squeeze the curve into another shape.
+    pub weights: [f64; 3],
     /// Stops when the ropelength falls by less than this fraction over a window of steps.
     pub tolerance: f64,
     /// A curve whose vertices still want to move further than this is not at rest.
@@ -28,9 +30,14 @@ const WINDOW: usize = 6;
 /// Largest displacement of a vertex in one step, in units of the thickness: two strands cannot pass each other below 1.
 const LARGEST_STEP: f64 = 0.9;
 
+/// Largest displacement of a vertex in one step, in units of the tube radius.
+const LONGEST_STEP: f64 = 0.5;
+
 /// What tightening at one resolution came to.
 #[derive(Debug)]
 pub(crate) struct Outcome {
+    /// Last curve.
+    pub last: Polyline,
     /// Shortest curve met, in units in which the tube radius was about 1.
     pub curve: Polyline,
     /// Its length over its thickness.
@@ -56,7 +63,7 @@ pub(crate) fn tighten_level(start: &Polyline, level: &Level) -> Option<Outcome> 
     let mut history = vec![best_ropelength];
     let (mut pairs, mut rows): (Vec<(u32, u32)>, Vec<Row>) = (Vec::new(), Vec::new());
     let mut gradient = vec![0.0; 3 * n];
-    let mut delta: f64 = 0.5;
+    let mut delta: f64 = LONGEST_STEP;
     let mut tau: f64 = 1.0;
     let (mut n_steps, mut n_factorisations, mut converged) = (0, 0, false);
     while n_steps < level.max_steps {
@@ -66,6 +73,7 @@ pub(crate) fn tighten_level(start: &Polyline, level: &Level) -> Option<Outcome> 
         rebuild(curve.vertices(), delta, &mut pairs, &mut rows);
         let stretch = Hessian {
             stencil: [2.0 / h, -1.0 / h, 0.0],
+            weights: level.weights,
         };
         let flat: Vec<f64> = curve
             .vertices()
@@ -80,6 +88,7 @@ pub(crate) fn tighten_level(start: &Polyline, level: &Level) -> Option<Outcome> 
                 stretch.stencil[1] - 4.0 * bend,
                 bend,
             ],
+            weights: level.weights,
         };
         let gap = 1e-2 * level.tolerance * length;
         let solution = qp::solve(hessian, &gradient, &rows, gap)?;
@@ -120,7 +129,7 @@ pub(crate) fn tighten_level(start: &Polyline, level: &Level) -> Option<Outcome> 
             break;
         }
         history.push(best_ropelength);
-        delta = (1.5 * largest.min(delta)).clamp(0.03, 0.5);
+        delta = (1.5 * largest.min(delta)).clamp(0.03, LONGEST_STEP);
         if history.len() > WINDOW {
             let before = history[history.len() - 1 - WINDOW];
             if before - best_ropelength < level.tolerance * best_ropelength && largest < level.rest
@@ -131,6 +140,7 @@ pub(crate) fn tighten_level(start: &Polyline, level: &Level) -> Option<Outcome> 
         }
     }
     Some(Outcome {
+        last: curve,
         curve: best,
         ropelength: best_ropelength,
         n_factorisations,

@@ -4,11 +4,13 @@ use topo_core::SparseCholesky;
 
 use super::constraints::Row;
 
-/// Hessian of the objective: the same cyclic pentadiagonal matrix for each of the three coordinates.
+/// Hessian of the objective: a cyclic pentadiagonal matrix for each of the three coordinates.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Hessian {
     /// Diagonal, first and second neighbour.
     pub stencil: [f64; 3],
+    /// Factor of the stencil for each coordinate.
+    pub weights: [f64; 3],
 }
 
 impl Hessian {
@@ -17,9 +19,10 @@ impl Hessian {
         let n = y.len();
         let [h0, h1, h2] = self.stencil;
         for i in 0..n {
-            out[i] = h0 * y[i]
+            let along = h0 * y[i]
                 + h1 * (y[(i + 3) % n] + y[(i + n - 3) % n])
                 + h2 * (y[(i + 6) % n] + y[(i + n - 6) % n]);
+            out[i] = self.weights[i % 3] * along;
         }
     }
 }
@@ -255,7 +258,7 @@ impl System {
             for (place, h) in places.iter().zip(hessian.stencil) {
                 let slots = &self.blocks[*place as usize];
                 for p in 0..3 {
-                    values[slots[4 * p] as usize] += h;
+                    values[slots[4 * p] as usize] += hessian.weights[p] * h;
                 }
             }
         }
@@ -313,6 +316,7 @@ mod tests {
         ];
         let hessian = Hessian {
             stencil: [2.0, 0.0, 0.0],
+            weights: [1.0; 3],
         };
         let found = solve(hessian, &gradient, &rows, 1e-10).expect("solved");
         assert!(found.converged);
@@ -330,6 +334,7 @@ mod tests {
         let gradient: Vec<f64> = (0..30).map(|k| (k as f64).sin()).collect();
         let hessian = Hessian {
             stencil: [6.5, -4.0, 1.0],
+            weights: [1.0; 3],
         };
         let found = solve(hessian, &gradient, &[], 1e-9).expect("solved");
         let mut product = vec![0.0; 30];

@@ -4,7 +4,7 @@ use rand::SeedableRng;
 use rand_pcg::Pcg64;
 use topo_core::Polyline;
 
-use super::kick::kick;
+use super::kick::{kick, squeeze};
 use super::level::{Level, Outcome, tighten_level};
 use super::settings::TightenSettings;
 use super::{Invariants, KnotError, check_type};
@@ -30,49 +30,33 @@ pub(crate) fn search(
     let mut n_factorisations = 0;
     for start in starts {
         check_type(name, start, kind, "preparing the starts")?;
-        for variant in 0..=settings.n_variants {
-            let varied = if variant == 0 {
-                Some(start.clone())
-            } else {
-                kick(start, KICK * thickness(start).tau, &mut rng)
-            };
-            let outcome = varied.and_then(|curve| tighten_loose(&curve, settings));
-            match outcome.map(|o| (check_type(name, &o.curve, kind, "searching"), o)) {
-                Some((Ok(()), outcome)) => {
-                    n_factorisations += outcome.n_factorisations;
-                    pool.push(outcome);
-                }
-                Some((Err(error), _)) => last = error.to_string(),
-                None => {}
-            }
+        let Some(outcome) = tighten_loose(start, settings) else {
+            continue;
+        };
+        n_factorisations += outcome.n_factorisations;
+        match check_type(name, &outcome.curve, kind, "searching") {
+            Ok(()) => pool.push(outcome),
+            Err(error) => last = error.to_string(),
+        }
+    }
+    // Many starts rest at saddle points high above the basin below them, so each is kicked before they are compared.
+    for place in 0..pool.len() {
+        for _ in 0..settings.n_kicks_a_start {
+            n_factorisations += try_move(&mut pool[place], Move::Kick, name, kind, &mut rng);
         }
     }
     pool.sort_by(|a, b| a.ropelength.total_cmp(&b.ropelength));
     pool.truncate(N_FINALISTS);
     for k in 0..settings.n_kicks {
-        // The first half of the kicks is shared, the second half goes to the leader.
-        let place = if 2 * k < settings.n_kicks {
-            k % N_FINALISTS
-        } else {
-            0
+        let (kind_of_move, place) = match (k % 2, k / 2 % N_FINALISTS) {
+            (0, place) => (Move::Squeeze, place),
+            (_, place) => (Move::Kick, place),
         };
-        let Some(curve) = pool.get(place).map(|o| &o.curve) else {
-            continue;
-        };
-        let Some(kicked) = kick(curve, KICK * thickness(curve).tau, &mut rng) else {
-            continue;
-        };
-        let Some(outcome) = tighten_level(&kicked, &level()) else {
-            continue;
-        };
-        n_factorisations += outcome.n_factorisations;
-        if outcome.ropelength < pool[place].ropelength
-            && check_type(name, &outcome.curve, kind, "searching").is_ok()
-        {
-            pool[place] = outcome;
-            pool.sort_by(|a, b| a.ropelength.total_cmp(&b.ropelength));
+        if let Some(finalist) = pool.get_mut(place) {
+            n_factorisations += try_move(finalist, kind_of_move, name, kind, &mut rng);
         }
     }
+    pool.sort_by(|a, b| a.ropelength.total_cmp(&b.ropelength));
     match pool.into_iter().next() {
         Some(best) => Ok(Outcome {
             n_factorisations,
@@ -86,11 +70,46 @@ pub(crate) fn search(
     }
 }
 
+/// How to leave a basin.
+#[derive(Clone, Copy)]
+enum Move {
+    /// Off a saddle point.
+    Kick,
+    /// Further, into another basin.
+    Squeeze,
+}
+
+/// Moves a curve, tightens it again and keeps the better one; returns the number of factorisations.
+fn try_move(
+    best: &mut Outcome,
+    how: Move,
+    name: &str,
+    kind: &Invariants,
+    rng: &mut Pcg64,
+) -> usize {
+    let curve = &best.curve;
+    let moved = match how {
+        Move::Kick => kick(curve, KICK * thickness(curve).tau, rng),
+        Move::Squeeze => squeeze(curve, rng),
+    };
+    let Some(outcome) = moved.and_then(|curve| tighten_level(&curve, &level())) else {
+        return 0;
+    };
+    let n_factorisations = outcome.n_factorisations;
+    if outcome.ropelength < best.ropelength
+        && check_type(name, &outcome.curve, kind, "searching").is_ok()
+    {
+        *best = outcome;
+    }
+    n_factorisations
+}
+
 fn level() -> Level {
     Level {
         damping: 0.02,
         curvature_damping: 0.1,
-        tolerance: 1e-3,
+        weights: [1.0; 3],
+        tolerance: 3e-4,
         rest: 0.3,
         enough: 0.0,
         max_steps: 100,

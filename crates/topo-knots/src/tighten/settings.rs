@@ -11,9 +11,11 @@ pub struct TightenSettings {
     pub per_unit: f64,
     /// Vertices of the search for the basin.
     pub search_vertices: usize,
-    /// Random variants of each start besides the start itself.
+    /// Random words of the same closed braid from which the search starts too.
     pub n_variants: usize,
-    /// Random kicks to the best curves of the search.
+    /// Random kicks of each start.
+    pub n_kicks_a_start: usize,
+    /// Random kicks and squeezes of the best curves of the search.
     pub n_kicks: usize,
     /// Seed of variants and kicks.
     pub seed: u64,
@@ -30,7 +32,8 @@ impl TightenSettings {
             per_unit: 4.0,
             search_vertices: 150,
             n_variants: 1,
-            n_kicks: 6,
+            n_kicks_a_start: 2,
+            n_kicks: 4,
             seed: 1,
             tolerance: 2e-4,
             max_steps: 80,
@@ -90,6 +93,13 @@ impl TightenSettings {
             (
                 "n_variants",
                 self.n_variants as f64,
+                0.0,
+                1000.0,
+                "expected at most 1000",
+            ),
+            (
+                "n_kicks_a_start",
+                self.n_kicks_a_start as f64,
                 0.0,
                 1000.0,
                 "expected at most 1000",
