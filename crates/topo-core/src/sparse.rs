@@ -81,6 +81,47 @@ impl SparseCholesky {
         Self::with_threshold(n, pattern, ordering, DENSE_ENOUGH)
     }
 
+    /// As [`new`](Self::new) for `n_blocks` square blocks of `size` rows: `pattern` names pairs of blocks, which are ordered as
+    /// units. That takes a fraction of the time and keeps blocks dense in the factor.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn blocked(
+        n_blocks: usize,
+        size: usize,
+        pattern: &[(u32, u32)],
+    ) -> Result<Self, SparseError> {
+        let outside = |(i, j): &&(u32, u32)| *i as usize >= n_blocks || *j as usize >= n_blocks;
+        if let Some(&(i, j)) = pattern.iter().find(outside) {
+            return Err(SparseError::OutOfBounds {
+                row: i as usize,
+                column: j as usize,
+                n: n_blocks,
+            });
+        }
+        let n = n_blocks.saturating_mul(size);
+        if n == 0 || n >= i32::MAX as usize {
+            return Err(SparseError::Size { n });
+        }
+        let order = minimum_degree(n_blocks, &compressed(n_blocks, pattern.iter().copied(), true))
+            .ok_or(SparseError::OutOfMemory { n })?;
+        let order: Vec<usize> = order
+            .iter()
+            .flat_map(|&b| (0..size).map(move |k| b as usize * size + k))
+            .collect();
+        let unit = size as u32;
+        let diagonal = (0..n_blocks as u32).map(|i| (i, i));
+        let full: Vec<(u32, u32)> = pattern
+            .iter()
+            .copied()
+            .chain(diagonal)
+            .flat_map(|(i, j)| {
+                (0..unit * unit).map(move |k| (unit * i + k / unit, unit * j + k % unit))
+            })
+            .collect();
+        Self::with_ordering(n, &full, Some(&order))
+    }
+
     fn with_threshold(
         n: usize,
         pattern: &[(u32, u32)],

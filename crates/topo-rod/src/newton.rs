@@ -157,13 +157,8 @@ impl NewtonMatrix {
         }
         blocks.extend(second);
         blocks.extend(self.pairs.iter().map(|&(i, j)| (i as usize, j as usize)));
-        let mut pattern = Vec::with_capacity(9 * blocks.len());
-        for &(a, b) in &blocks {
-            for k in 0..9 {
-                pattern.push(((3 * a + k / 3) as u32, (3 * b + k % 3) as u32));
-            }
-        }
-        let solver = SparseCholesky::new(3 * n, &pattern)?;
+        let pattern: Vec<(u32, u32)> = blocks.iter().map(|&(a, b)| (a as u32, b as u32)).collect();
+        let solver = SparseCholesky::blocked(n, 3, &pattern)?;
         self.blocks.clear();
         self.blocks.extend(blocks.iter().map(|&(a, b)| {
             std::array::from_fn(|k| {

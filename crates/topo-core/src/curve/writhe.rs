@@ -79,8 +79,9 @@ fn sum_over_pairs(vertices: &[V], closed: bool, weight: impl Fn(f64) -> f64) -> 
     for i in 0..n_edges - 2 {
         let (p, q) = (vertices[i], vertices[(i + 1) % n]);
         let e = q - p;
-        // The first and the last edge of a closed curve share a vertex.
-        let end = if closed && i == 0 {
+        // The first and the last edge of a closed curve share a vertex, as do those of a curve just cut.
+        let joined = closed || vertices[0] == vertices[n - 1];
+        let end = if joined && i == 0 {
             n_edges - 1
         } else {
             n_edges

@@ -203,3 +203,19 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn blocked_ordering_solves_the_same_system() {
+    let (n, b) = (60, 3);
+    let pattern = ring_pattern(n, b, 100);
+    let blocks: Vec<(u32, u32)> = ring_pattern(n, 1, 100)
+        .into_iter()
+        .chain((0..n).map(|i| (i, (i + 2) % n)))
+        .collect();
+    let mut matrix = SparseCholesky::blocked(n as usize, b as usize, &blocks).unwrap();
+    fill(&mut matrix, &pattern);
+    matrix.factor().unwrap();
+    assert!(residual(&mut matrix, 3) < 1e-11);
+    assert!(SparseCholesky::blocked(4, 3, &[(0, 4)]).is_err());
+    assert!(SparseCholesky::blocked(0, 3, &[]).is_err());
+}

@@ -166,7 +166,13 @@ impl SampleRecorder {
             self.tube.contact_diameter.max(self.tube.friction_range),
             0.01,
         );
-        pairs.set_cyclic(state.is_closed());
+        let parted = !state.is_closed()
+            && super::cut::CutRod::tips_have_parted(
+                state,
+                self.tube.contact_diameter,
+                pairs.window().outer(),
+            );
+        pairs.set_cyclic(!parted);
         pairs.update(state);
         let touching =
             |p: &&crate::contact::ActivePair| p.strands && p.distance < self.tube.contact_diameter;
