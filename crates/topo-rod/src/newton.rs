@@ -1,6 +1,6 @@
 //! The matrix of the linearly implicit steps, η K + η_f C + s H, on the centreline.
 
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Vector3};
 use topo_core::{SparseCholesky, SparseError};
 
 use crate::contact::ContactPairs;
@@ -15,6 +15,8 @@ pub(crate) struct NewtonMatrix {
     blocks: Vec<[usize; 9]>,
     pairs: Vec<(u32, u32)>,
     couplings: Vec<(u32, u32, f64)>,
+    /// Blocks (free, held) that carry a prescribed motion over to the free vertices.
+    driven: Vec<(usize, usize, Matrix3<f64>)>,
     fixed: Vec<bool>,
     floating: bool,
     chain: Chain,
@@ -75,9 +77,13 @@ impl NewtonMatrix {
         values.fill(0.0);
         let viscous = 1.0 / self.chain.rest_length();
         let identity = |c: f64| Matrix3::from_diagonal_element(c);
+        self.driven.clear();
         let mut add = |block: usize, (a, b): (usize, usize), m: Matrix3<f64>, diagonal: bool| {
-            if self.fixed[a] || self.fixed[b] {
-                return;
+            match (self.fixed[a], self.fixed[b]) {
+                (false, false) => {}
+                (true, true) => return,
+                (false, true) => return self.driven.push((a, b, m)),
+                (true, false) => return self.driven.push((b, a, m.transpose())),
             }
             for (k, &slot) in self.blocks[block].iter().enumerate() {
                 let (row, column) = (k / 3, k % 3);
@@ -177,11 +183,6 @@ impl NewtonMatrix {
         let n = self.chain.n_vertices();
         self.work.clear();
         self.work.extend_from_slice(&r[..3 * n]);
-        for i in (0..n).filter(|&i| self.fixed[i]) {
-            for k in 0..3 {
-                self.work[k * n + i] = 0.0;
-            }
-        }
         self.right.clear();
         self.right.resize(3 * n, 0.0);
         let viscous = 1.0 / self.chain.rest_length();
@@ -196,6 +197,13 @@ impl NewtonMatrix {
         }
         for &(i, j, c) in &self.couplings {
             multiply_pair(&self.work, &mut self.right, n, (i as usize, j as usize), c);
+        }
+        for (free, held, block) in &self.driven {
+            let w = Vector3::from_fn(|k, _| self.work[k * n + held]);
+            let pull = block * w;
+            for k in 0..3 {
+                self.right[3 * free + k] -= pull[k];
+            }
         }
         if let Some(solver) = self.solver.as_mut() {
             for i in (0..n).filter(|&i| self.fixed[i]) {
@@ -277,11 +285,7 @@ impl NewtonTwist {
     pub(crate) fn solve(&mut self, w: &mut [f64]) {
         let half = 0.5 / self.chain.rest_length();
         self.work.clear();
-        self.work.extend(
-            w.iter()
-                .zip(&self.held)
-                .map(|(w, &held)| if held { 0.0 } else { *w }),
-        );
+        self.work.extend_from_slice(w);
         let right = &mut *w;
         let given: Vec<(usize, f64)> = self
             .held
@@ -296,7 +300,7 @@ impl NewtonTwist {
             right[a] += half * (self.work[a] - self.cosine[i] * self.work[b]);
             right[b] += half * (self.work[b] - self.cosine[i] * self.work[a]);
         }
-        given.iter().for_each(|g| right[g.0] = 0.0);
+        given.iter().for_each(|g| right[g.0] = g.1);
         self.viscosity
             .solve(self.chain, &self.cosine, self.stiffness, right);
         given.iter().for_each(|g| right[g.0] = g.1);
