@@ -64,30 +64,25 @@ fn law_link_is_kept_through_a_charge() {
 
 /// dE + dissipation = work + removal: the residual of the books falls in proportion to the tolerance.
 ///
-/// A discharge is followed through many releases of contact, where steps are refused, so that its residual scatters.
+/// A discharge passes through many releases of contact, so that its residual scatters; it is held to a multiple of the tolerance.
 #[test]
 fn law_energy_books_balance_at_first_order() {
+    let tolerances = [2e-3, 1e-4, 2e-5];
     let residuals = |tolerance: f64| {
         let battery = battery(&start_trefoil(), twisted(60, 1.0), tolerance);
-        let run = discharge(&battery, 0.5, 1.0);
         let found = [
             charged(&battery, 0.5).record().report.ledger_residual,
-            run.record.report.ledger_residual,
+            discharge(&battery, 0.5, 1.0).record.report.ledger_residual,
         ];
         println!("tolerance {tolerance:.0e}: {found:?} charging and discharging");
+        assert!(found.iter().all(|r| *r < 2.0 * tolerance));
         found
     };
-    let [loose, middle, tight] = [2e-3, 1e-4, 2e-5].map(residuals);
-    for (phase, least) in [(0, 0.9), (1, 0.7)] {
-        assert!(
-            middle[phase] < 1e-3,
-            "{:.2e} at tolerance 1e-4",
-            middle[phase]
-        );
-        let order = (loose[phase] / tight[phase]).ln() / 100f64.ln();
-        println!("order {order:.2}");
-        assert!(order > least, "order {order:.2} in phase {phase}");
-    }
+    let [loose, middle, tight] = tolerances.map(residuals);
+    assert!(middle.iter().all(|r| *r < 1e-3));
+    let order = (loose[0] / tight[0]).ln() / (tolerances[0] / tolerances[2]).ln();
+    println!("order {order:.2}");
+    assert!(order > 0.9, "order {order:.2}");
 }
 
 fn same_energies(a: &Discharge, b: &Discharge, tolerance: f64) {
@@ -141,9 +136,9 @@ fn law_runs_are_deterministic() {
     let (a, b) = (run(), run());
     assert_eq!(a.record.curve, b.record.curve);
     assert_eq!(a.record.report.work, b.record.report.work);
-    let state = |d: &Discharge| d.record.samples.last().unwrap().clone();
-    assert_eq!(state(&a).vertices, state(&b).vertices);
-    assert_eq!(state(&a).twists, state(&b).twists);
+    let state = |d: &Discharge| d.record.samples.last().unwrap().state.clone();
+    assert_eq!(state(&a).vertices(), state(&b).vertices());
+    assert_eq!(state(&a).twists(), state(&b).twists());
 }
 
 /// Friction only ever takes energy, at every step, and strong friction slows the discharge.

@@ -103,8 +103,11 @@ impl SparseCholesky {
         if n == 0 || n >= i32::MAX as usize {
             return Err(SparseError::Size { n });
         }
-        let order = minimum_degree(n_blocks, &compressed(n_blocks, pattern.iter().copied(), true))
-            .ok_or(SparseError::OutOfMemory { n })?;
+        let order = minimum_degree(
+            n_blocks,
+            &compressed(n_blocks, pattern.iter().copied(), true),
+        )
+        .ok_or(SparseError::OutOfMemory { n })?;
         let order: Vec<usize> = order
             .iter()
             .flat_map(|&b| (0..size).map(move |k| b as usize * size + k))

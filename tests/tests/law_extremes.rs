@@ -1,0 +1,346 @@
+//! Extremes of the parameters: inside the stated range every run finishes, beyond it a run finishes or says why it stopped.
+
+use proptest::prelude::*;
+use topo_core::{Interrupt, StopReason};
+use topo_rod::{
+    Accuracy, ChargeSettings, ContactParameters, CutSite, Discharge, DischargeSettings,
+    FrictionParameters, FrictionRange, Guards, Reading, RodBattery, RodParameters,
+};
+use topo_tests::curves::{closed, trefoil};
+
+/// One corner of the space of parameters.
+#[derive(Debug, Clone, Copy)]
+struct Case {
+    twist: f64,
+    stretch_ratio: f64,
+    n_edges: usize,
+    friction: f64,
+    contact: f64,
+}
+
+const MIDDLE: Case = Case {
+    twist: 0.0,
+    stretch_ratio: 5.0,
+    n_edges: 100,
+    friction: 0.1,
+    contact: 20.0,
+};
+
+impl Case {
+    fn is_inner(&self) -> bool {
+        self.twist.abs() <= 2.0
+            && (1.0..=100.0).contains(&self.stretch_ratio)
+            && (100..=800).contains(&self.n_edges)
+            && (5.0..=100.0).contains(&self.contact)
+    }
+
+    /// Charges for a while, cuts, discharges for a while.
+    fn run(&self, duration: f64, max_steps: u64) {
+        let parameters = RodParameters {
+            n_edges: self.n_edges,
+            stretch_ratio: self.stretch_ratio,
+            twist: Some(self.twist),
+            contact: Some(ContactParameters {
+                stiffness: self.contact,
+            }),
+            friction: Some(FrictionParameters {
+                ratio: self.friction,
+                ..Default::default()
+            }),
+            ..Default::default()
+        };
+        let accuracy = Accuracy {
+            max_steps,
+            ..Default::default()
+        };
+        let curve = trefoil(400, 2.0, 1.0);
+        let battery =
+            RodBattery::new(&parameters, &accuracy, Guards::default(), &curve, 45.0).unwrap();
+        let charge = ChargeSettings {
+            duration,
+            ..Default::default()
+        };
+        let charged = battery.charge(&charge, &Interrupt::new()).unwrap();
+        self.judge(&charged.record().report.stop, "charging");
+        assert!(
+            charged.record().report.link_drift.unwrap() < 1e-8,
+            "{self:?}"
+        );
+        if !charged.record().report.stop.is_success() {
+            return;
+        }
+        let settings = DischargeSettings {
+            longest: duration,
+            ..Default::default()
+        };
+        let run = charged
+            .cut(CutSite::MaximumEnergyDensity)
+            .and_then(|cut| cut.discharge(&settings, &Interrupt::new()))
+            .unwrap();
+        self.judge(&run.record.report.stop, "discharging");
+        assert_finite(&run);
+    }
+
+    fn judge(&self, stop: &StopReason, phase: &str) {
+        if !stop.is_success() {
+            println!("{self:?} {phase}: {stop}");
+            assert!(!self.is_inner(), "{self:?} {phase}: {stop}");
+            assert!(
+                matches!(
+                    stop,
+                    StopReason::StepTooSmall { .. }
+                        | StopReason::StepLimit { .. }
+                        | StopReason::Failed { .. }
+                ),
+                "{self:?} {phase}: {stop}"
+            );
+        }
+    }
+}
+
+fn assert_finite(run: &Discharge) {
+    let curve = &run.record.curve;
+    let numbers = curve.stored().iter().chain(curve.dissipated()).flatten();
+    assert!(numbers.chain(curve.time()).all(|x| x.is_finite()));
+    let last = run.record.samples.last().unwrap();
+    assert!(last.state.vertices().iter().all(|v| v.sum().is_finite()));
+}
+
+/// The middle of the range with one parameter at a time at its end, and the worst corners of the inner range.
+#[test]
+fn law_runs_at_the_extremes_finish_or_say_why() {
+    let cases = [
+        MIDDLE,
+        Case {
+            twist: 4.0,
+            ..MIDDLE
+        },
+        Case {
+            twist: -4.0,
+            ..MIDDLE
+        },
+        Case {
+            stretch_ratio: 0.5,
+            ..MIDDLE
+        },
+        Case {
+            stretch_ratio: 1000.0,
+            ..MIDDLE
+        },
+        Case {
+            n_edges: 50,
+            ..MIDDLE
+        },
+        Case {
+            friction: 0.0,
+            ..MIDDLE
+        },
+        Case {
+            friction: 10.0,
+            ..MIDDLE
+        },
+        Case {
+            contact: 5.0,
+            ..MIDDLE
+        },
+        Case {
+            contact: 500.0,
+            ..MIDDLE
+        },
+        Case {
+            twist: 2.0,
+            stretch_ratio: 1.0,
+            contact: 5.0,
+            ..MIDDLE
+        },
+        Case {
+            twist: -2.0,
+            stretch_ratio: 100.0,
+            contact: 100.0,
+            friction: 10.0,
+            ..MIDDLE
+        },
+    ];
+    for case in cases {
+        case.run(0.2, 20_000);
+    }
+    Case {
+        n_edges: 400,
+        twist: 2.0,
+        ..MIDDLE
+    }
+    .run(0.05, 20_000);
+    Case {
+        n_edges: 1600,
+        ..MIDDLE
+    }
+    .run(0.002, 2_000);
+}
+
+/// The grid of ends and middles, charged and discharged for longer; of the finest rods its edges.
+#[test]
+#[ignore = "long: 15 minutes"]
+fn long_extremes() {
+    for n_edges in [50, 100, 200, 800, 1600] {
+        let fine = n_edges > 400;
+        let twists: &[f64] = if fine {
+            &[0.0, 4.0]
+        } else {
+            &[-4.0, -2.0, 0.0, 2.0, 4.0]
+        };
+        let frictions: &[f64] = if fine { &[0.1] } else { &[0.0, 0.1, 10.0] };
+        for &twist in twists {
+            for stretch_ratio in [0.5, 1.0, 5.0, 100.0, 1000.0] {
+                for contact in [5.0, 20.0, 100.0, 500.0] {
+                    for &friction in frictions {
+                        let case = Case {
+                            twist,
+                            stretch_ratio,
+                            n_edges,
+                            friction,
+                            contact,
+                        };
+                        case.run(if fine { 0.01 } else { 0.5 }, 50_000);
+                    }
+                }
+            }
+        }
+        println!("{n_edges} edges done");
+    }
+}
+
+/// Any number at all: ordinary, extreme, zero, negative, infinite or NaN.
+fn any_number() -> impl Strategy<Value = f64> {
+    prop_oneof![
+        4 => -5.0..100.0f64,
+        2 => prop::num::f64::NORMAL,
+        1 => prop::num::f64::ANY,
+        1 => Just(0.0),
+    ]
+}
+
+fn any_reading() -> impl Strategy<Value = Reading> {
+    prop_oneof![
+        Just(Reading::Shrunk),
+        Just(Reading::Hard),
+        Just(Reading::Tight),
+        Just(Reading::OwnLength),
+    ]
+}
+
+prop_compose! {
+    fn any_parameters()(
+        numbers in prop::array::uniform6(any_number()),
+        reading in any_reading(),
+        n_edges in 0usize..80,
+        twist in prop::option::of(any_number()),
+        has_contact in any::<bool>(),
+        has_friction in any::<bool>(),
+        range in prop_oneof![
+            Just(FrictionRange::Reading),
+            Just(FrictionRange::Contact),
+            any_number().prop_map(FrictionRange::TimesContact),
+        ],
+    ) -> (RodParameters, f64) {
+        let [slenderness, twist_ratio, stretch_ratio, stiffness, ratio, ropelength] = numbers;
+        let parameters = RodParameters {
+            slenderness,
+            reading,
+            n_edges,
+            twist_ratio,
+            stretch_ratio,
+            twist,
+            contact: has_contact.then_some(ContactParameters { stiffness }),
+            friction: has_friction.then_some(FrictionParameters { ratio, range }),
+        };
+        (parameters, ropelength)
+    }
+}
+
+/// Builds a battery and, if it can be built, charges and discharges it for a few dozen steps; returns whether it ran.
+fn survives(
+    parameters: &RodParameters,
+    accuracy: &Accuracy,
+    ropelength: f64,
+    knotted: bool,
+) -> bool {
+    let curve = if knotted {
+        trefoil(60, 2.0, 1.0)
+    } else {
+        closed(40, |u| {
+            nalgebra::Vector3::new(u.cos(), 0.5 * u.sin(), 0.2 * (2.0 * u).cos())
+        })
+    };
+    let Ok(battery) = RodBattery::new(parameters, accuracy, Guards::default(), &curve, ropelength)
+    else {
+        return false;
+    };
+    let settings = ChargeSettings {
+        duration: 0.01,
+        ..Default::default()
+    };
+    let Ok(charged) = battery.charge(&settings, &Interrupt::new()) else {
+        return false;
+    };
+    let sample = charged.record().samples.last().unwrap();
+    assert!(sample.state.vertices().iter().all(|v| v.sum().is_finite()));
+    assert!(
+        sample.stored.iter().all(|e| e.is_finite()),
+        "{:?}",
+        sample.stored
+    );
+    let settings = DischargeSettings {
+        longest: 0.01,
+        ..Default::default()
+    };
+    if let Ok(run) = charged
+        .cut(CutSite::At(0.3))
+        .and_then(|cut| cut.discharge(&settings, &Interrupt::new()))
+    {
+        assert_finite(&run);
+    }
+    true
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// No number in the parameters makes a rod panic, give NaN or never end.
+    #[test]
+    fn law_any_parameters_are_refused_or_run(
+        (parameters, ropelength) in any_parameters(),
+        tolerance in any_number(),
+        skin in any_number(),
+        gamma in any_number(),
+        knotted in any::<bool>(),
+    ) {
+        let wild = Accuracy { tolerance, skin, gamma, max_steps: 60, ..Default::default() };
+        let tame = Accuracy { max_steps: 60, ..Default::default() };
+        survives(&parameters, &wild, ropelength, knotted);
+        survives(&parameters, &tame, 45.0, knotted);
+    }
+
+    /// Numbers that are in range are accepted and run.
+    #[test]
+    fn law_parameters_in_range_run(
+        twist in -4.0..4.0f64,
+        stretch_ratio in 0.5..1000.0f64,
+        n_edges in 8usize..80,
+        friction in 0.0..10.0f64,
+        contact in 5.0..500.0f64,
+        reading in any_reading(),
+        knotted in any::<bool>(),
+    ) {
+        let parameters = RodParameters {
+            reading,
+            n_edges,
+            stretch_ratio,
+            twist: Some(twist),
+            contact: Some(ContactParameters { stiffness: contact }),
+            friction: Some(FrictionParameters { ratio: friction, ..Default::default() }),
+            ..Default::default()
+        };
+        let accuracy = Accuracy { max_steps: 60, ..Default::default() };
+        prop_assert!(survives(&parameters, &accuracy, 45.0, knotted));
+    }
+}
