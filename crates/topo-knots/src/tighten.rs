@@ -31,7 +31,7 @@ const N_PADS: usize = 2;
 /// A tight knot with the evidence for it.
 ///
 /// # Validation
-/// `easy_knots_are_tight`, `long_all_knots_are_tight`.
+/// `all_knots_are_tight`, `long_all_knots_are_tight_at_eight_vertices_a_unit`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TightKnot {
     /// Name of the knot.

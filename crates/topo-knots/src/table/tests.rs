@@ -98,6 +98,11 @@ fn files_with_faults_are_named() {
         ("\"chiral\"", "\"amphichiral\"", "chirality"),
         ("\"chiral\"", "\"both\"", "chirality"),
         ("crossing_number", "crossings", "crossings"),
+        (
+            "braid =",
+            "other_braids = [[1, 1]]\nbraid =",
+            "other_braids",
+        ),
         ("braid =", "polygon = \"p.csv\"\nbraid =", "line 4"),
     ] {
         let error = parse(&good.replacen(from, to, 1))

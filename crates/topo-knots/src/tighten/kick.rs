@@ -61,3 +61,39 @@ pub(crate) fn squeeze(curve: &Polyline, rng: &mut Pcg64) -> Option<Polyline> {
     let n = turned.n_edges();
     tighten_level(&turned, &level)?.last.resampled(n).ok()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{KnotTable, closed_braid, thickness};
+    use rand::SeedableRng;
+
+    #[test]
+    fn kicks_and_squeezes_keep_the_type() {
+        let mut rng = Pcg64::seed_from_u64(5);
+        let table = KnotTable::builtin();
+        let knot = table.get("4_1").expect("known");
+        let braid = closed_braid(&knot.braid).expect("a knot").resampled(120);
+        let braid = braid.expect("resampled");
+        let tau = thickness(&braid).tau;
+        for _ in 0..3 {
+            let kicked = kick(&braid, 0.7 * tau, &mut rng).expect("moved");
+            knot.verify(&kicked).expect("the same knot");
+            let moved = kicked.vertices().iter().zip(braid.vertices());
+            let largest = moved.map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+            assert!((largest - 0.7 * tau).abs() < 1e-9);
+            let squeezed = squeeze(&braid, &mut rng).expect("moved");
+            knot.verify(&squeezed).expect("the same knot");
+            // Far more than a kick: the shape as a whole is another one.
+            let spread = |c: &Polyline| {
+                let middle = c.centroid();
+                c.vertices()
+                    .iter()
+                    .map(|x| (x - middle).norm())
+                    .fold(0.0, f64::max)
+                    / c.length()
+            };
+            assert!((spread(&squeezed) / spread(&braid) - 1.0).abs() > 0.02);
+        }
+    }
+}
