@@ -22,7 +22,7 @@ use crate::times::{DischargeTimes, ELASTIC_SHARES};
 pub const RESULTS_VERSION: u32 = 1;
 
 /// Elastic parts of the energy, without contact.
-const ELASTIC: [&str; 3] = ["bend", "twist", "stretch"];
+pub(crate) const ELASTIC: [&str; 3] = ["bend", "twist", "stretch"];
 
 /// What a later run needs to know of a finished case.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -58,6 +58,32 @@ pub(crate) fn finished(folder: &Path, fingerprint: &str) -> Option<Vec<SweepRow>
     Some(summary.rows)
 }
 
+/// Twists and relaxes the knot of a case.
+pub(crate) fn charge(
+    scene: &ElasticScene,
+    case: &ElasticCase,
+    tight: &TightKnot,
+    interrupt: &Interrupt,
+) -> Result<ChargedRod, AnalysisError> {
+    let refuse = |source| AnalysisError::Rod {
+        case: case.name(),
+        source,
+    };
+    let start = tight.centreline(case.rod.n_edges)?;
+    let tube = case.rod.tube(start.ropelength).map_err(refuse)?;
+    let size = scene.imperfection * start.curve.length() / tube.start_length;
+    let curve = perturbed(&start.curve, size, scene.seed).map_err(|e| refuse(e.into()))?;
+    RodBattery::new(
+        &case.rod,
+        &scene.accuracy,
+        Guards::default(),
+        &curve,
+        start.ropelength,
+    )
+    .and_then(|battery| battery.charge(&scene.charge, interrupt))
+    .map_err(refuse)
+}
+
 /// Runs a case and writes its folder; `None` when interrupted, and then nothing is written.
 pub(crate) fn run(
     scene: &ElasticScene,
@@ -72,19 +98,7 @@ pub(crate) fn run(
         source,
     };
     let clock = CpuClock::start();
-    let start = tight.centreline(case.rod.n_edges)?;
-    let tube = case.rod.tube(start.ropelength).map_err(refuse)?;
-    let size = scene.imperfection * start.curve.length() / tube.start_length;
-    let curve = perturbed(&start.curve, size, scene.seed).map_err(|e| refuse(e.into()))?;
-    let battery = RodBattery::new(
-        &case.rod,
-        &scene.accuracy,
-        Guards::default(),
-        &curve,
-        start.ropelength,
-    )
-    .map_err(refuse)?;
-    let charged = battery.charge(&scene.charge, interrupt).map_err(refuse)?;
+    let charged = charge(scene, case, tight, interrupt)?;
     let charge_seconds = clock.seconds();
     if interrupt.is_requested() {
         return Ok(None);

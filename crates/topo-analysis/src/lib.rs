@@ -5,6 +5,7 @@
 //!
 //! Energies are in E_0 = E_b h² L and times in T_0 = 2 L η/(h E_b), with L the row's own length.
 
+mod accuracy;
 mod case;
 mod error;
 mod imperfection;
@@ -17,6 +18,7 @@ mod table;
 mod timeline;
 mod times;
 
+pub use accuracy::{ACCURACY_CASES, AccuracyRow, measure_accuracy, reference};
 pub use case::RESULTS_VERSION;
 pub use error::AnalysisError;
 pub use imperfection::perturbed;

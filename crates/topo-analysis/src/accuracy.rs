@@ -1,0 +1,198 @@
+//! How far the discharge times of a preset are from those of a much finer run.
+
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use topo_core::{CpuClock, GAMMA_L_STABLE_SMALL, Interrupt};
+use topo_knots::KnotTable;
+use topo_rod::{Accuracy, CutSite};
+
+use crate::AnalysisError;
+use crate::case::{ELASTIC, charge};
+use crate::knots::Shapes;
+use crate::scene::{ElasticCase, ElasticScene};
+use crate::sweep::Event;
+use crate::times::{DischargeTimes, ELASTIC_SHARES};
+
+/// Knots and twists on which accuracy is measured: every knot of the published sweep untwisted, and twenty others spread over
+/// knots and twists. The list is fixed so that numbers of different versions can be compared.
+pub const ACCURACY_CASES: [(&str, f64); 34] = [
+    ("3_1", 0.0),
+    ("4_1", 0.0),
+    ("5_1", 0.0),
+    ("5_2", 0.0),
+    ("6_1", 0.0),
+    ("6_2", 0.0),
+    ("6_3", 0.0),
+    ("7_1", 0.0),
+    ("7_2", 0.0),
+    ("7_3", 0.0),
+    ("7_4", 0.0),
+    ("7_5", 0.0),
+    ("7_6", 0.0),
+    ("7_7", 0.0),
+    ("3_1", 2.0),
+    ("3_1", -2.0),
+    ("3_1", 1.0),
+    ("4_1", 2.0),
+    ("4_1", -1.0),
+    ("5_1", 1.5),
+    ("5_1", -0.5),
+    ("5_2", -2.0),
+    ("5_2", 0.75),
+    ("6_1", 1.0),
+    ("6_1", -1.75),
+    ("6_2", 2.0),
+    ("6_3", -1.25),
+    ("7_1", 0.5),
+    ("7_1", -2.0),
+    ("7_2", 1.75),
+    ("7_3", -1.0),
+    ("7_4", 1.25),
+    ("7_5", -1.5),
+    ("7_7", 2.0),
+];
+
+/// One comparison; times in T_0.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct AccuracyRow {
+    /// Knot type.
+    pub knot: String,
+    /// θ'h.
+    pub twist: f64,
+    /// Place of the cut, s/L, the same in both runs.
+    pub cut: f64,
+    /// t50 of the preset.
+    pub t50: Option<f64>,
+    /// t99 of the preset.
+    pub t99: Option<f64>,
+    /// t50 of the reference.
+    pub t50_reference: Option<f64>,
+    /// t99 of the reference.
+    pub t99_reference: Option<f64>,
+    /// Relative error of t50, in per cent.
+    pub t50_error_percent: Option<f64>,
+    /// Relative error of t99, in per cent.
+    pub t99_error_percent: Option<f64>,
+    /// Elastic energy after charging over that of the reference.
+    pub energy_ratio: f64,
+    /// Processor seconds of the preset.
+    pub cpu_seconds: f64,
+    /// Processor seconds of the reference.
+    pub cpu_seconds_reference: f64,
+}
+
+/// The reference: twice the edges, tolerance 1e-4 h, g = 1 − 1/√2, a fresh Newton matrix every step.
+pub fn reference(scene: &ElasticScene) -> ElasticScene {
+    let mut fine = scene.clone();
+    fine.rod.n_edges = 2 * scene.rod.n_edges;
+    fine.accuracy = Accuracy {
+        tolerance: 1e-4,
+        gamma: GAMMA_L_STABLE_SMALL,
+        reuse: 1,
+        ..scene.accuracy
+    };
+    fine
+}
+
+/// Compares the discharges of `scene` with those of [`reference`] on the given knots and twists, cut at the same place.
+///
+/// # Errors
+/// As [`run_sweep`](crate::run_sweep).
+pub fn measure_accuracy(
+    scene: &ElasticScene,
+    cases: &[(&str, f64)],
+    table: &KnotTable,
+    shapes: &Shapes,
+    interrupt: &Interrupt,
+    progress: &(dyn Fn(Event<'_>) + Sync),
+) -> Result<Vec<AccuracyRow>, AnalysisError> {
+    let fine = reference(scene);
+    let n_done = std::sync::atomic::AtomicUsize::new(0);
+    let rows: Vec<Option<AccuracyRow>> = cases
+        .par_iter()
+        .with_max_len(1)
+        .map(|&(knot, twist)| {
+            let name = table.get(knot)?.name.clone();
+            let Some(tight) = shapes.get(&name) else {
+                return Ok(None);
+            };
+            let run = |scene: &ElasticScene, site: CutSite| -> Result<_, AnalysisError> {
+                let clock = CpuClock::start();
+                let mut case = ElasticCase {
+                    knot: name.clone(),
+                    rod: scene.rod.clone(),
+                };
+                case.rod.twist = Some(twist);
+                let refuse = |source| AnalysisError::Rod {
+                    case: case.name(),
+                    source,
+                };
+                let charged = charge(scene, &case, tight, interrupt)?;
+                let energy = charged
+                    .record()
+                    .samples
+                    .last()
+                    .map_or(f64::NAN, |s| s.elastic());
+                let run = charged
+                    .cut(site)
+                    .and_then(|c| c.discharge(&scene.discharge, interrupt))
+                    .map_err(refuse)?;
+                let times =
+                    DischargeTimes::of(&run.record.curve, &ELASTIC, run.start, &ELASTIC_SHARES);
+                let at = |share| times.at(share).map(|t| t.value);
+                Ok((run.at, energy, at(0.5), at(0.99), clock.seconds()))
+            };
+            let (cut, energy, t50, t99, cpu_seconds) = run(scene, CutSite::MaximumEnergyDensity)?;
+            let (_, fine_energy, t50_reference, t99_reference, cpu_seconds_reference) =
+                run(&fine, CutSite::At(cut))?;
+            if interrupt.is_requested() {
+                return Ok(None);
+            }
+            let n_done = n_done.fetch_add(1, std::sync::atomic::Ordering::Relaxed) + 1;
+            progress(Event::Case {
+                name: &format!("{name} {twist:+.2}"),
+                n_done,
+                warnings: "",
+            });
+            let error =
+                |a: Option<f64>, b: Option<f64>| a.zip(b).map(|(a, b)| 100.0 * (a / b - 1.0));
+            Ok(Some(AccuracyRow {
+                knot: name,
+                twist,
+                cut,
+                t50,
+                t99,
+                t50_reference,
+                t99_reference,
+                t50_error_percent: error(t50, t50_reference),
+                t99_error_percent: error(t99, t99_reference),
+                energy_ratio: energy / fine_energy,
+                cpu_seconds,
+                cpu_seconds_reference,
+            }))
+        })
+        .collect::<Result<_, AnalysisError>>()?;
+    Ok(rows.into_iter().flatten().collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_list_has_every_published_knot_untwisted_and_no_case_twice() {
+        let table = KnotTable::builtin();
+        for name in table.names() {
+            assert!(ACCURACY_CASES.contains(&(name, 0.0)), "{name}");
+        }
+        let twisted = ACCURACY_CASES.iter().filter(|c| c.1 != 0.0).count();
+        assert_eq!(twisted, 20);
+        for (k, case) in ACCURACY_CASES.iter().enumerate() {
+            assert!(
+                !ACCURACY_CASES[k + 1..].contains(case),
+                "{case:?} is listed twice"
+            );
+            assert!((case.1 * 4.0).fract() == 0.0 && case.1.abs() <= 2.0);
+        }
+    }
+}
