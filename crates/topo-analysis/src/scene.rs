@@ -21,7 +21,7 @@ use serde::{Deserialize, Serialize};
 use topo_knots::TightenSettings;
 use topo_rod::{
     Accuracy, ChargeSettings, ContactParameters, DischargeSettings, Ends, FrictionParameters,
-    IntegratorKind, Reading, RodParameters,
+    FrictionRange, IntegratorKind, Reading, RodParameters,
 };
 
 use crate::AnalysisError;
@@ -256,7 +256,9 @@ struct File {
 /// An elastic experiment: which knots, how twisted, how cut, how accurately.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ElasticScene {
-    /// Knot names; "all" alone stands for the whole table.
+    /// Folder of its tables below the output folder.
+    pub folder: String,
+    /// Knot names; "all" stands for the whole table.
     pub knots: Vec<String>,
     /// θ'h of the cases; empty: no twist is modelled.
     pub twists: Vec<f64>,
@@ -311,6 +313,7 @@ impl ElasticScene {
     /// The published sweep: 14 knots at 17 twists.
     pub fn published(preset: Preset) -> Self {
         Self {
+            folder: "elastic".to_owned(),
             knots: vec!["all".to_owned()],
             twists: Numbers::Range {
                 from: -2.0,
@@ -523,8 +526,30 @@ impl ElasticScene {
     }
 
     /// Where files with the scene's tables lie below an output folder.
-    pub fn folder(out: &Path) -> PathBuf {
-        out.join("elastic")
+    pub fn results(&self, out: &Path) -> PathBuf {
+        out.join(&self.folder)
+    }
+
+    /// The untwisted cases under the two other choices that separate knot type from friction: friction range equal to the
+    /// contact diameter, and the reading `tight`. Their tables lie in folders of their own.
+    pub fn friction_variants(&self) -> [Self; 2] {
+        let untwisted = Self {
+            twists: vec![0.0],
+            ..self.clone()
+        };
+        let mut contact = Self {
+            folder: "elastic-contact-range".to_owned(),
+            ..untwisted.clone()
+        };
+        if let Some(friction) = &mut contact.rod.friction {
+            friction.range = FrictionRange::Contact;
+        }
+        let mut tight = Self {
+            folder: "elastic-tight".to_owned(),
+            ..untwisted
+        };
+        tight.rod.reading = Reading::Tight;
+        [contact, tight]
     }
 }
 

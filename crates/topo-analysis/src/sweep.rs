@@ -124,7 +124,7 @@ pub fn run_sweep(
     settings: &SweepSettings,
     progress: &(dyn Fn(Event<'_>) + Sync),
 ) -> Result<SweepReport, AnalysisError> {
-    let folder = ElasticScene::folder(&settings.out);
+    let folder = scene.results(&settings.out);
     writable(&folder)?;
     let cases = scene.cases(table)?;
     let mut found = Vec::with_capacity(cases.len());

@@ -2,7 +2,6 @@
 
 mod certificate;
 mod constraints;
-mod cpu;
 mod kick;
 mod level;
 mod qp;
@@ -19,8 +18,8 @@ use topo_core::Polyline;
 
 use crate::moebius::relax_moebius;
 use crate::{Invariants, KnotEntry, KnotError, closed_braid, thickness};
-use cpu::CpuClock;
 use level::{Level, tighten_level};
+use topo_core::CpuClock;
 
 /// Vertices and steps of the descent of the Moebius energy that gives the second start.
 const MOEBIUS_EDGES: usize = 320;
