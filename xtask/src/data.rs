@@ -1,10 +1,12 @@
 //! The tables that figures are drawn from, read back from a results folder.
 
+mod curves;
+mod file;
+
 use crate::error::XtaskError;
-use nalgebra::Vector3;
-use serde::Deserialize;
-use serde::de::DeserializeOwned;
-use std::path::{Path, PathBuf};
+pub use curves::{Curve, Moment, Snapshot, series, snapshots};
+pub use file::{read_csv, write};
+use std::path::Path;
 pub use topo_analysis::{KnotRow, SweepRow as Cut};
 
 /// The 14 knots to seven crossings, in the order of the tables.
@@ -123,146 +125,6 @@ impl Sweep {
     }
 }
 
-/// A vertex of `charged.csv` or `snapshots.csv`: lengths in h, density in E_b h^2.
-#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
-struct Vertex {
-    #[serde(default)]
-    cut: f64,
-    #[serde(default)]
-    time: f64,
-    #[serde(default)]
-    s: f64,
-    x: f64,
-    y: f64,
-    z: f64,
-    #[serde(default)]
-    energy_density: f64,
-}
-
-/// A curve with its arc length and energy density.
-#[derive(Debug, Clone, Default)]
-pub struct Curve {
-    /// Arc length of the vertices.
-    pub s: Vec<f64>,
-    /// Vertices.
-    pub points: Vec<Vector3<f64>>,
-    /// Energy density at the vertices.
-    pub density: Vec<f64>,
-}
-
-impl Curve {
-    /// Reads `charged.csv` of a case, or a knot's `x,y,z`.
-    pub fn read(path: &Path) -> Result<Self, XtaskError> {
-        let mut curve = Self::default();
-        for v in read_csv::<Vertex>(path)? {
-            curve.push(&v);
-        }
-        if curve.points.len() < 3 {
-            let reason = format!("{} vertices, at least 3 are needed", curve.points.len());
-            return Err(XtaskError::Table {
-                path: path.to_owned(),
-                reason,
-            });
-        }
-        Ok(curve)
-    }
-
-    fn push(&mut self, v: &Vertex) {
-        self.s.push(v.s);
-        self.points.push(Vector3::new(v.x, v.y, v.z));
-        self.density.push(v.energy_density);
-    }
-}
-
-/// An open curve at a time of a discharge.
-#[derive(Debug, Clone)]
-pub struct Snapshot {
-    /// Place of the cut.
-    pub cut: f64,
-    /// Time in T0.
-    pub time: f64,
-    /// The curve.
-    pub curve: Curve,
-}
-
-/// Reads `snapshots.csv`, in order of the file.
-pub fn snapshots(path: &Path) -> Result<Vec<Snapshot>, XtaskError> {
-    let mut shots: Vec<Snapshot> = Vec::new();
-    for v in read_csv::<Vertex>(path)? {
-        match shots.last_mut() {
-            Some(s) if s.cut == v.cut && s.time == v.time => s.curve.push(&v),
-            _ => {
-                let mut curve = Curve::default();
-                curve.push(&v);
-                shots.push(Snapshot {
-                    cut: v.cut,
-                    time: v.time,
-                    curve,
-                });
-            }
-        }
-    }
-    shots.retain(|s| s.curve.points.len() >= 3);
-    Ok(shots)
-}
-
-/// A row of `series.csv` as far as figures need it.
-#[derive(Debug, Clone, Deserialize)]
-pub struct Moment {
-    /// Place of the cut.
-    pub cut: f64,
-    /// Time in T0.
-    pub time: f64,
-    /// Elastic energy in E0.
-    pub energy: f64,
-    /// Most probable knot type of the closed-up curve, empty where it was not determined.
-    pub knot: Option<String>,
-}
-
-/// Reads `series.csv`.
-pub fn series(path: &Path) -> Result<Vec<Moment>, XtaskError> {
-    read_csv(path)
-}
-
-/// Reads a CSV file with a header.
-pub fn read_csv<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>, XtaskError> {
-    let file = std::fs::File::open(path).map_err(|source| match source.kind() {
-        std::io::ErrorKind::NotFound => XtaskError::Missing {
-            path: path.to_owned(),
-            remedy: "run `cargo xtask figures` to compute it, or name the folder by --out",
-        },
-        _ => XtaskError::File {
-            path: path.to_owned(),
-            source,
-        },
-    })?;
-    let rows = csv::Reader::from_reader(std::io::BufReader::new(file)).into_deserialize();
-    rows.collect::<Result<_, _>>()
-        .map_err(|e| XtaskError::Table {
-            path: path.to_owned(),
-            reason: e.to_string(),
-        })
-}
-
-/// Writes a file whole or not at all: beside its place first, then renamed.
-pub fn write(path: &Path, bytes: &[u8]) -> Result<(), XtaskError> {
-    let fail = |source| XtaskError::File {
-        path: PathBuf::from(path),
-        source,
-    };
-    let folder = path.parent().unwrap_or(Path::new("."));
-    std::fs::create_dir_all(folder).map_err(fail)?;
-    let mut builder = tempfile::Builder::new();
-    // Results are for others to read, unlike most temporary files.
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o644));
-    let mut file = builder.tempfile_in(folder).map_err(fail)?;
-    std::io::Write::write_all(&mut file, bytes).map_err(fail)?;
-    file.as_file().sync_all().map_err(fail)?;
-    file.persist(path).map_err(|e| fail(e.error))?;
-    Ok(())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -310,14 +172,5 @@ mod tests {
         assert_eq!(e.exit_code(), 2);
         let e = Sweep::read(&dir.path().join("nowhere")).unwrap_err();
         assert!(matches!(e, XtaskError::Missing { .. }));
-    }
-
-    #[test]
-    fn write_refuses_a_folder_that_is_a_file() {
-        let dir = tempfile::tempdir().unwrap();
-        let file = dir.path().join("a");
-        write(&file, b"1").unwrap();
-        assert!(write(&file.join("b"), b"2").is_err());
-        assert_eq!(std::fs::read(&file).unwrap(), b"1");
     }
 }

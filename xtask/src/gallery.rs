@@ -23,7 +23,7 @@ dl{background:var(--card);border-radius:6px;padding:.8rem 1rem;margin:1rem 0}dt{
 /// Writes `index.html` into the results folder: one file that opens from disk.
 pub fn write(
     results: &Path,
-    done: &[Done],
+    done: &[&Done],
     quality: Quality,
     provenance: &Provenance,
 ) -> Result<(), XtaskError> {
@@ -33,7 +33,7 @@ pub fn write(
     )
 }
 
-fn page(done: &[Done], quality: Quality, provenance: &Provenance) -> String {
+fn page(done: &[&Done], quality: Quality, provenance: &Provenance) -> String {
     let mut html = format!(
         "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\
          <meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\

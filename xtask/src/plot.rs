@@ -1,8 +1,8 @@
 //! Drawing, offline and without a display: shaded tubes, panels of axes, and their composition.
 //!
 //! Reading order: [`color`] (scales), [`camera`] (how a curve is turned to the reader),
-//! [`tube`] (a curve made smooth, with its baked light), [`raster`] (its pixels),
-//! [`text`] (labels with sub- and superscripts), [`panel`] (axes), [`canvas`] (one SVG of all
+//! [`smooth`] (a polygon made smooth), [`tube`] (its surface with baked light), [`raster`] (its pixels),
+//! [`text`] (labels with sub- and superscripts), [`panel`] (axes), [`style`] and [`canvas`] (one SVG of all
 //! these), [`render`] (the SVG as PNG with the shipped fonts).
 
 pub mod camera;
@@ -12,5 +12,7 @@ pub mod font;
 pub mod panel;
 pub mod raster;
 pub mod render;
+pub mod smooth;
+pub mod style;
 pub mod text;
 pub mod tube;

@@ -23,6 +23,8 @@ pub struct Provenance {
     pub presets: BTreeMap<String, String>,
     /// Wall seconds by stage.
     pub wall_seconds: BTreeMap<String, f64>,
+    /// What the numbers of each figure say.
+    pub findings: BTreeMap<String, String>,
     /// Warnings of the runs, each with the number of runs that gave it.
     pub warnings: BTreeMap<String, usize>,
 }
@@ -41,15 +43,17 @@ impl Provenance {
             quality,
             presets: BTreeMap::new(),
             wall_seconds: BTreeMap::new(),
+            findings: BTreeMap::new(),
             warnings: BTreeMap::new(),
         }
     }
 
-    /// Adds the times of drawing.
+    /// Adds the times and findings of drawing.
     pub fn drew(&mut self, done: &[Done]) {
         for d in done {
-            self.wall_seconds
-                .insert(format!("draw {}", d.figure.name), d.seconds);
+            let name = d.figure.name;
+            self.wall_seconds.insert(format!("draw {name}"), d.seconds);
+            self.findings.insert(name.to_owned(), d.finding.clone());
         }
     }
 
@@ -88,6 +92,14 @@ impl Provenance {
         })?;
         data::write(&results.join("provenance.json"), text.as_bytes())
     }
+}
+
+/// Findings that an earlier command noted in a results folder.
+pub fn earlier_findings(results: &Path) -> BTreeMap<String, String> {
+    let text = std::fs::read_to_string(results.join("provenance.json")).unwrap_or_default();
+    let old: Option<serde_json::Value> = serde_json::from_str(&text).ok();
+    old.and_then(|v| serde_json::from_value(v.get("findings")?.clone()).ok())
+        .unwrap_or_default()
 }
 
 /// Folder of the workspace: where cargo built this program from, or the current folder when

@@ -8,14 +8,14 @@ use crate::figures::{self, Context, Done};
 use crate::gallery;
 use crate::interrupt;
 use crate::progress::Progress;
-use crate::provenance::{Provenance, workspace};
+use crate::provenance::{self, Provenance, workspace};
 
 pub fn run(args: &FiguresArgs) -> Result<(), XtaskError> {
     let chosen = figures::chosen(&args.only)?;
     let jobs = super::threads(args.work.jobs)?;
     let interrupt = interrupt::install();
     let results = args.work.out.as_path();
-    let mut provenance = Provenance::collect(&workspace(), args.quality);
+    let mut record = Provenance::collect(&workspace(), args.quality);
 
     let order = compute::Order {
         results,
@@ -25,7 +25,7 @@ pub fn run(args: &FiguresArgs) -> Result<(), XtaskError> {
         elastic: chosen.iter().any(|f| f.table.starts_with("elastic/")),
         knots: chosen.iter().any(|f| f.table.starts_with("knots/")),
     };
-    compute::tables(&order, &interrupt, &mut provenance)?;
+    compute::tables(&order, &interrupt, &mut record)?;
 
     let context = Context {
         results,
@@ -40,15 +40,28 @@ pub fn run(args: &FiguresArgs) -> Result<(), XtaskError> {
         progress.done(figure.name);
     }
     progress.finish();
-    provenance.drew(&done);
-    if order.elastic {
-        for case in &Sweep::read(results)?.cases {
-            case.cuts.iter().for_each(|c| provenance.warn(&c.warnings));
+    let n_drawn = done.len();
+    let mut earlier = provenance::earlier_findings(results);
+    // The gallery keeps what earlier commands drew.
+    for figure in figures::ALL {
+        if done.iter().all(|d| d.figure.name != figure.name)
+            && let Some(finding) = earlier.remove(figure.name)
+        {
+            done.extend(figures::kept(figure, results, finding));
         }
     }
-    provenance.write(results)?;
-    gallery::write(results, &done, args.quality, &provenance)?;
-    for d in &done {
+    let place = |d: &Done| figures::ALL.iter().position(|f| f.name == d.figure.name);
+    let mut shown: Vec<&Done> = done.iter().collect();
+    shown.sort_by_key(|d| place(d));
+    record.drew(&done);
+    if order.elastic {
+        for case in &Sweep::read(results)?.cases {
+            case.cuts.iter().for_each(|c| record.warn(&c.warnings));
+        }
+    }
+    record.write(results)?;
+    gallery::write(results, &shown, args.quality, &record)?;
+    for d in &done[..n_drawn] {
         println!("{}: {}", d.figure.name, d.finding);
     }
     println!("gallery: {}", results.join("index.html").display());

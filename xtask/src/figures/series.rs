@@ -1,7 +1,8 @@
 //! What the panels share: the chosen knots and their colours, lines, ranges, tidy labels.
 
-use crate::plot::canvas::{Canvas, Style};
+use crate::plot::canvas::Canvas;
 use crate::plot::color::{BLUE, GREEN, PURPLE, VERMILION};
+use crate::plot::style::Style;
 use kuva::prelude::{LinePlot, Plot};
 use std::fmt::Write;
 
@@ -157,5 +158,10 @@ mod tests {
             ys.len() == 4 && ys.windows(2).all(|w| w[1] - w[0] > 10.0),
             "{ys:?}"
         );
+    }
+
+    #[test]
+    fn picked_out_knots_are_in_the_table() {
+        assert!(CHOSEN.iter().all(|(k, _)| crate::data::KNOTS.contains(k)));
     }
 }

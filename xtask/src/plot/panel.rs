@@ -1,7 +1,8 @@
 //! Axes with data: kuva draws ticks and series, the canvas the labels around them.
 
-use super::canvas::{Canvas, Style};
+use super::canvas::Canvas;
 use super::color::INK;
+use super::style::Style;
 use super::text;
 use kuva::backend::svg::SvgBackend;
 use kuva::prelude::{Layout, Plot, TickFormat};

@@ -3,9 +3,10 @@
 use super::super::series::{OTHERS, Table, color, labels, line, log_bounds};
 use super::{drawing_order, others_note, twist_axis};
 use crate::data::{Case, Sweep};
-use crate::plot::canvas::{Canvas, Style};
+use crate::plot::canvas::Canvas;
 use crate::plot::color::Scale;
 use crate::plot::panel::{Axis, Panel};
+use crate::plot::style::Style;
 use crate::plot::text;
 use kuva::prelude::{LinePlot, Plot, ScatterPlot};
 
