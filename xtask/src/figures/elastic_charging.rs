@@ -1,6 +1,6 @@
 //! Charging a chiral and an achiral knot: energy against twist, and where the energy sits.
 
-use super::series::{Table, bounds, line, step, ticks};
+use super::series::{Table, bounds, line, root_ticks, step};
 use super::{Context, Drawn, Figure, face};
 use crate::data::{Case, Curve, Sweep};
 use crate::error::XtaskError;
@@ -38,7 +38,7 @@ fn draw(context: &Context) -> Result<Drawn, XtaskError> {
         .iter()
         .flat_map(|r| r.states.iter().flat_map(|s| s.1.density.iter().copied()));
     let high = bounds(densities).1;
-    let scale = Scale::viridis(0.0, high);
+    let scale = Scale::viridis_root(high);
     let unit = rows.iter().map(Row::unit).fold(f64::MAX, f64::min);
     let energy_top = rows
         .iter()
@@ -58,7 +58,7 @@ fn draw(context: &Context) -> Result<Drawn, XtaskError> {
         [672.0, 150.0],
         [9.0, 190.0],
         &scale,
-        &ticks(0.0, high, step(high, 4.0)),
+        &root_ticks(high),
         "Energy density *w* / *E*_{b}*h*^{2}",
     );
     canvas.footnote(&face(&sweep, context.quality));
@@ -102,7 +102,7 @@ impl<'a> Row<'a> {
                 .last()
                 .and_then(|s| camera::aligned(&curve.points, &s.2));
             let turn = like.unwrap_or_else(|| camera::flattest(&curve.points));
-            let view = camera::view(&curve.points, &turn);
+            let view = camera::flattened(camera::view(&curve.points, &turn));
             states.push((cases[i].first().twist, curve, view));
         }
         Ok(Self {
@@ -231,9 +231,11 @@ impl<'a> Row<'a> {
 
     fn draw_density(&self, canvas: &mut Canvas, top: f64, first: bool, table: &mut Table) {
         let ends = [self.states.first(), self.states.last()];
-        let length = bounds(ends.iter().flatten().flat_map(|s| s.1.s.iter().copied()))
-            .1
-            .max(1.0);
+        let length = ends
+            .iter()
+            .flatten()
+            .map(|s| round(&s.1))
+            .fold(1.0, f64::max);
         // Twist spreads evenly: its share would leave most of the panel empty.
         let shown = ends
             .iter()
@@ -257,13 +259,14 @@ impl<'a> Row<'a> {
         let mut plots = Vec::new();
         let colors = [BLUE, VERMILION];
         for (state, color) in ends.iter().flatten().zip(colors) {
-            let points: Vec<(f64, f64)> = state
-                .1
+            let curve = &state.1;
+            let mut points: Vec<(f64, f64)> = curve
                 .s
                 .iter()
                 .copied()
-                .zip(state.1.density.iter().copied())
+                .zip(curve.density.iter().copied())
                 .collect();
+            points.push((round(curve), curve.density[0]));
             for (x, y) in &points {
                 table.row(&["b-density", self.knot], &[state.0, *x, *y]);
             }
@@ -306,4 +309,11 @@ impl<'a> Row<'a> {
             text::signed(b.twist)
         )
     }
+}
+
+/// Length of a closed curve whose last edge returns to its first vertex.
+fn round(curve: &Curve) -> f64 {
+    let n = curve.s.len();
+    let last = curve.s[n - 1] - curve.s[0];
+    last * n as f64 / (n - 1) as f64
 }

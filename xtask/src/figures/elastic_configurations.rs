@@ -1,6 +1,6 @@
 //! All charged states as tubes coloured by energy density, one row a knot, one column a twist.
 
-use super::series::{Table, bounds, step, ticks};
+use super::series::{Table, bounds, root_ticks};
 use super::{Context, Drawn, Figure, face};
 use crate::data::{Curve, Sweep};
 use crate::error::XtaskError;
@@ -33,11 +33,12 @@ fn draw(context: &Context) -> Result<Drawn, XtaskError> {
         .map(|knot| row(context, &sweep, knot))
         .collect::<Result<Vec<_>, _>>()?;
     let states: Vec<&State> = rows.iter().flatten().collect();
-    let scale = Scale::viridis(0.0, high_density(&states));
+    let scale = Scale::viridis_root(high_density(&states));
     let unit = (CELL[0].min(CELL[1]) - 1.0) / widest(&states);
 
     let (left, top) = (34.0, 34.0);
-    let width = left + CELL[0] * twists.len() as f64 + 50.0;
+    // A few twists still leave room for the note at the foot.
+    let width = (left + CELL[0] * twists.len() as f64 + 50.0).max(620.0);
     let bottom = top + CELL[1] * knots.len() as f64;
     let mut canvas = Canvas::new(width, bottom + 34.0, 5.0 * context.detail);
     let middle = left + CELL[0] * twists.len() as f64 / 2.0;
@@ -108,7 +109,7 @@ fn draw(context: &Context) -> Result<Drawn, XtaskError> {
         bar,
         size,
         &scale,
-        &ticks(0.0, high, step(high, 4.0)),
+        &root_ticks(high),
         "Energy density *w* / *E*_{b}*h*^{2}",
     );
     canvas.footnote(&face(&sweep, context.quality));
@@ -154,24 +155,10 @@ fn row(context: &Context, sweep: &Sweep, knot: &str) -> Result<Vec<State>, Xtask
         let points = &states[i].curve.points;
         let turn = near.and_then(|&j| camera::aligned(points, &states[j].view));
         let view = camera::view(points, &turn.unwrap_or_else(|| camera::flattest(points)));
-        states[i].view = flattened(view);
+        states[i].view = camera::flattened(view);
     }
     square_up(&mut states);
     Ok(states)
-}
-
-/// Leans a view back so that its thinnest extent is along the view, if it has a thin one.
-fn flattened(view: Vec<Vector3<f64>>) -> Vec<Vector3<f64>> {
-    let thin = camera::flattest(&view).row(2).transpose();
-    let thin = if thin.z < 0.0 { -thin } else { thin };
-    // A large lean would break the likeness to the neighbour.
-    if thin.z < 0.5 {
-        return view;
-    }
-    match Rotation3::rotation_between(&thin, &Vector3::z()) {
-        Some(lean) => camera::view(&view, lean.matrix()),
-        None => view,
-    }
 }
 
 /// Turns a row in the plane of the page so that its widest picture is as small as can be.

@@ -31,17 +31,17 @@ pub(super) const FIGURE: Figure = Figure {
 fn draw(context: &Context) -> Result<Drawn, XtaskError> {
     let sweep = Sweep::read(context.results)?;
     let mut table = Table::new("panel,knot,twist,x,y,low,high");
-    let mut canvas = Canvas::new(720.0, 684.0, 4.0 * context.detail);
+    let mut canvas = Canvas::new(720.0, 732.0, 4.0 * context.detail);
     canvas.letter(8.0, 18.0, "a");
-    let bar = snapshots::draw(context, &sweep, &mut canvas, [10.0, 8.0], [700.0, 182.0])?;
-    canvas.letter(8.0, 216.0, "b");
-    initial_energy(&sweep, &mut canvas, [52.0, 210.0], &mut table);
-    canvas.letter(376.0, 216.0, "c");
-    let path = phases::draw(context, &sweep, &mut canvas, [422.0, 210.0], &mut table)?;
-    canvas.letter(8.0, 448.0, "d");
-    times::against_twist(&sweep, &mut canvas, [52.0, 442.0], &mut table);
-    canvas.letter(376.0, 448.0, "e");
-    times::all(&sweep, &mut canvas, [422.0, 442.0], &mut table);
+    let bar = snapshots::draw(context, &sweep, &mut canvas, [10.0, 8.0], [700.0, 230.0])?;
+    canvas.letter(8.0, 264.0, "b");
+    initial_energy(&sweep, &mut canvas, [52.0, 258.0], &mut table);
+    canvas.letter(376.0, 264.0, "c");
+    let path = phases::draw(context, &sweep, &mut canvas, [422.0, 258.0], &mut table)?;
+    canvas.letter(8.0, 496.0, "d");
+    times::against_twist(&sweep, &mut canvas, [52.0, 490.0], &mut table);
+    canvas.letter(376.0, 496.0, "e");
+    times::all(&sweep, &mut canvas, [422.0, 490.0], &mut table);
     canvas.footnote(&face(&sweep, context.quality));
     let finding = format!("{} {path} {bar}", times::finding(&sweep));
     Ok(Drawn {

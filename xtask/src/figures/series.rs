@@ -68,6 +68,15 @@ pub fn ticks(low: f64, high: f64, step: f64) -> Vec<f64> {
         .collect()
 }
 
+/// Round values for a square-root scale from 0 to `high`: dense below, sparse above.
+pub fn root_ticks(high: f64) -> Vec<f64> {
+    let coarse = step(high, 3.0);
+    let fine = [0.1 * coarse, 0.4 * coarse];
+    let mut all = ticks(0.0, high, coarse);
+    all.extend(fine);
+    all
+}
+
 /// Labels to the right of `x`, each as near to its height as the others let it.
 pub fn labels(canvas: &mut Canvas, x: f64, mut items: Vec<(f64, String, &str)>) {
     const PITCH: f64 = 10.5;

@@ -1,6 +1,6 @@
 //! How a curve is turned towards the reader: flattest side in front, like its neighbour.
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, Rotation3, Vector3};
 
 /// Centre of the vertices.
 pub fn centroid(points: &[Vector3<f64>]) -> Vector3<f64> {
@@ -49,6 +49,16 @@ pub fn view(points: &[Vector3<f64>], rotation: &Matrix3<f64>) -> Vec<Vector3<f64
     points.iter().map(|p| rotation * (p - c)).collect()
 }
 
+/// A view leant the shortest way so that its thinnest extent lies along the view.
+pub fn flattened(points: Vec<Vector3<f64>>) -> Vec<Vector3<f64>> {
+    let thin = flattest(&points).row(2).transpose();
+    let thin = if thin.z < 0.0 { -thin } else { thin };
+    match Rotation3::rotation_between(&thin, &Vector3::z()) {
+        Some(lean) => view(&points, lean.matrix()),
+        None => points,
+    }
+}
+
 /// Smallest and largest x and y of points in view coordinates: `[x0, y0, x1, y1]`.
 pub fn extent(points: &[Vector3<f64>]) -> [f64; 4] {
     points.iter().fold(
@@ -68,7 +78,6 @@ fn covariance(a: &[Vector3<f64>], b: &[Vector3<f64>]) -> Matrix3<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use nalgebra::Rotation3;
 
     fn helix() -> Vec<Vector3<f64>> {
         (0..50)
@@ -100,5 +109,17 @@ mod tests {
         assert!((f.determinant() - 1.0).abs() < 1e-9);
         let [x0, y0, x1, y1] = extent(&view(&turned, &f));
         assert!(x1 - x0 > 4.0 * (y1 - y0));
+    }
+
+    #[test]
+    fn leaning_back_shows_the_flat_side() {
+        let tilted: Vec<_> = helix()
+            .iter()
+            .map(|p| Rotation3::from_euler_angles(0.9, 0.2, 0.0) * p)
+            .collect();
+        let depth = |v: &[Vector3<f64>]| v.iter().map(|p| p.z * p.z).sum::<f64>();
+        let flat = flattened(tilted.clone());
+        let best = depth(&view(&tilted, &flattest(&tilted)));
+        assert!((depth(&flat) / best - 1.0).abs() < 1e-9);
     }
 }

@@ -154,16 +154,15 @@ impl Canvas {
         label: &str,
     ) {
         const N: usize = 64;
-        let (min, max) = scale.range();
         let dy = size[1] / N as f64;
         for i in 0..N {
-            let v = min + (max - min) * (i as f64 + 0.5) / N as f64;
+            let v = scale.value((i as f64 + 0.5) / N as f64);
             let y = at[1] + size[1] - (i + 1) as f64 * dy;
             // A little overlap hides the seams between the steps.
             self.rect([at[0], y], [size[0], dy + 0.3], &scale.css(v));
         }
         for &tick in ticks {
-            let y = at[1] + size[1] * (1.0 - (tick - min) / (max - min));
+            let y = at[1] + size[1] * (1.0 - scale.fraction(tick));
             let right = at[0] + size[0];
             self.line([right, y], [right + 3.0, y], INK, 0.7);
             self.text(

@@ -18,11 +18,12 @@ pub const GREEN: &str = "#009e73";
 /// Purple of the fourth highlighted series (Okabe-Ito).
 pub const PURPLE: &str = "#aa4499";
 
-/// Linear scale from data to the viridis colours.
+/// Scale from data to the viridis colours.
 #[derive(Debug, Clone)]
 pub struct Scale {
     min: f64,
     max: f64,
+    root: bool,
     table: Vec<Rgb>,
 }
 
@@ -37,7 +38,37 @@ impl Scale {
                 [r, g, b]
             })
             .collect();
-        Self { min, max, table }
+        let root = false;
+        Self {
+            min,
+            max,
+            root,
+            table,
+        }
+    }
+
+    /// Viridis from 0 to `max` by the square root: small values keep their differences.
+    pub fn viridis_root(max: f64) -> Self {
+        Self {
+            root: true,
+            ..Self::viridis(0.0, max)
+        }
+    }
+
+    /// Place of a value on the scale, from 0 to 1 within its range.
+    pub fn fraction(&self, value: f64) -> f64 {
+        let t = (value - self.min) / (self.max - self.min);
+        if self.root { t.max(0.0).sqrt() } else { t }
+    }
+
+    /// Value at a place on the scale.
+    pub fn value(&self, fraction: f64) -> f64 {
+        let t = if self.root {
+            fraction * fraction
+        } else {
+            fraction
+        };
+        self.min + (self.max - self.min) * t
     }
 
     /// Range of the data.
@@ -47,7 +78,7 @@ impl Scale {
 
     /// Colour of a value; a value that is not finite is drawn as the lowest one.
     pub fn rgb(&self, value: f64) -> Rgb {
-        let t = ((value - self.min) / (self.max - self.min)).clamp(0.0, 1.0);
+        let t = self.fraction(value).clamp(0.0, 1.0);
         let i = if t.is_finite() {
             (t * 255.0).round() as usize
         } else {
@@ -99,6 +130,14 @@ mod tests {
         assert!(luma(0.0) == luma(1.0) && luma(1.0) < luma(2.0) && luma(2.0) < luma(3.0));
         assert_eq!(scale.rgb(f64::NAN), scale.rgb(1.0));
         assert_eq!(scale.css(3.0).len(), 7);
+    }
+
+    #[test]
+    fn root_scale_spreads_small_values() {
+        let scale = Scale::viridis_root(4.0);
+        assert_eq!(scale.fraction(1.0), 0.5);
+        assert_eq!(scale.value(0.5), 1.0);
+        assert_eq!(scale.rgb(-1.0), scale.rgb(0.0));
     }
 
     #[test]

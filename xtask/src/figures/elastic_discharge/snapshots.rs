@@ -1,7 +1,7 @@
 //! Panel (a): the fastest and the slowest discharge at zero twist, as tubes.
 
 use super::super::Context;
-use super::super::series::{bounds, step, ticks};
+use super::super::series::{bounds, root_ticks};
 use crate::data::{self, Case, Snapshot, Sweep};
 use crate::error::XtaskError;
 use crate::plot::canvas::Canvas;
@@ -58,7 +58,7 @@ pub fn draw(
         .get((0.985 * sorted.len() as f64) as usize)
         .copied()
         .unwrap_or(1.0);
-    let scale = Scale::viridis(0.0, high.max(1e-12));
+    let scale = Scale::viridis_root(high.max(1e-12));
 
     let (bar, label, gap) = (56.0, 44.0, 7.0);
     let room = size[0] - bar - label - gap * SHOWN as f64;
@@ -66,9 +66,9 @@ pub fn draw(
     let widths = strips
         .iter()
         .map(|s| s.iter().map(|(_, v)| span(v)[0]).sum::<f64>());
-    let unit = widths.map(|w| room / w).fold(9.0, f64::min);
+    let unit = widths.map(|w| room / w).fold(8.0, f64::min);
     let tallest = bounds(strips.iter().flatten().map(|(_, v)| span(v)[1])).1;
-    let unit = unit.min((height - 24.0) / tallest);
+    let unit = unit.min((height - 20.0) / tallest);
     for (k, ((name, (case, _)), shots)) in rows.iter().zip(&strips).enumerate() {
         let top = at[1] + height * k as f64;
         let middle = top + (height - 18.0) / 2.0;
@@ -105,10 +105,7 @@ pub fn draw(
                 unit,
                 &tube,
             )?;
-            let time = format!(
-                "*t* = {}",
-                text::number(shot.time, if shot.time < 0.1 { 3 } else { 2 })
-            );
+            let time = told(shot.time);
             canvas.text(
                 x + side[0] / 2.0,
                 top + height - 8.0,
@@ -124,7 +121,7 @@ pub fn draw(
         bar_at,
         bar_size,
         &scale,
-        &ticks(0.0, high, step(high, 3.0)),
+        &root_ticks(high),
         "Energy density *w* / *E*_{b}*h*^{2}",
     );
     let said: Vec<String> = rows
@@ -138,6 +135,48 @@ pub fn draw(
         })
         .collect();
     Ok(format!("Snapshots at zero twist: {}.", said.join(", ")))
+}
+
+/// A time in T0 with as many decimals as it needs.
+fn told(time: f64) -> String {
+    if time == 0.0 {
+        return "*t* = 0".to_owned();
+    }
+    let places = if time < 0.1 {
+        3
+    } else {
+        usize::from(time < 10.0) + 1
+    };
+    format!("{} *T*_{{0}}", text::number(time, places))
+}
+
+/// The snapshots whose energies are spread most evenly from the first to the last 6 %.
+fn spread(shots: Vec<Snapshot>, energies: &[(f64, f64)]) -> Vec<Snapshot> {
+    if shots.len() <= SHOWN || energies.is_empty() {
+        return shots;
+    }
+    let start = energies[0].1.max(f64::MIN_POSITIVE);
+    let left = |time: f64| {
+        let gap = |m: &&(f64, f64)| (m.0 - time).abs();
+        let near = energies.iter().min_by(|a, b| gap(a).total_cmp(&gap(b)));
+        near.map_or(0.0, |m| m.1 / start)
+    };
+    let lefts: Vec<f64> = shots.iter().map(|s| left(s.time)).collect();
+    let mut kept: Vec<usize> = Vec::new();
+    for k in 0..SHOWN {
+        let aim = 1.0 - 0.94 * k as f64 / (SHOWN - 1) as f64;
+        let free = (0..shots.len()).filter(|i| !kept.contains(i));
+        kept.extend(
+            free.min_by(|&a, &b| (lefts[a] - aim).abs().total_cmp(&(lefts[b] - aim).abs())),
+        );
+    }
+    let mut i = 0;
+    let mut shots = shots;
+    shots.retain(|_| {
+        i += 1;
+        kept.contains(&(i - 1))
+    });
+    shots
 }
 
 fn span(view: &[Vector3<f64>]) -> [f64; 2] {
@@ -154,20 +193,13 @@ fn strip(results: &Path, case: &Case) -> Result<Strip, XtaskError> {
     let cut = case.first().cut;
     let mut shots = data::snapshots(&path)?;
     shots.retain(|s| (s.cut - cut).abs() < 1e-9);
-    // After most of the energy is gone, only a nearly straight fibre is left to see.
-    let early = |end: f64| shots.iter().filter(|s| s.time <= end).count() >= SHOWN;
-    if let Some(end) = case.first().t95.filter(|t| early(*t)) {
-        shots.retain(|s| s.time <= end);
-    }
-    let n = shots.len();
-    if n > SHOWN {
-        let kept: Vec<usize> = (0..SHOWN).map(|k| k * (n - 1) / (SHOWN - 1)).collect();
-        let mut i = 0;
-        shots.retain(|_| {
-            i += 1;
-            kept.contains(&(i - 1))
-        });
-    }
+    let energies = data::series(&path.with_file_name("series.csv"))?;
+    let energies: Vec<(f64, f64)> = energies
+        .iter()
+        .filter(|m| (m.cut - cut).abs() < 1e-9)
+        .map(|m| (m.time, m.energy))
+        .collect();
+    let shots = spread(shots, &energies);
     // Turned backwards from the straight end, which lies along x, to the knot.
     let mut strip = Strip::new();
     for shot in shots.into_iter().rev() {
@@ -178,4 +210,41 @@ fn strip(results: &Path, case: &Case) -> Result<Strip, XtaskError> {
     }
     strip.reverse();
     Ok(strip)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::Curve;
+
+    #[test]
+    fn snapshots_are_spread_in_energy() {
+        let shots: Vec<Snapshot> = (0..40)
+            .map(|k| Snapshot {
+                cut: 0.0,
+                time: f64::from(k),
+                curve: Curve::default(),
+            })
+            .collect();
+        // Nothing happens until 20, and nothing after 30.
+        let energies: Vec<(f64, f64)> = (0..40)
+            .map(|k| {
+                (
+                    f64::from(k),
+                    1.0 - (f64::from(k) - 20.0).clamp(0.0, 10.0) / 10.0,
+                )
+            })
+            .collect();
+        let times: Vec<f64> = spread(shots, &energies).iter().map(|s| s.time).collect();
+        assert_eq!(times.len(), SHOWN);
+        assert!(times.windows(2).all(|w| w[0] < w[1]));
+        assert!(times[1] > 20.0 && times[4] < 30.0, "{times:?}");
+    }
+
+    #[test]
+    fn times_are_told_briefly() {
+        assert_eq!(told(0.0), "*t* = 0");
+        assert_eq!(told(0.0123), "0.012 *T*_{0}");
+        assert_eq!(told(20.55), "20.6 *T*_{0}");
+    }
 }
