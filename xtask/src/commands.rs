@@ -1,5 +1,6 @@
 //! What each command does.
 
+mod accuracy;
 mod bench;
 mod cargo;
 mod ci;
@@ -7,18 +8,31 @@ mod figures;
 mod run;
 mod test;
 
-use crate::cli::{Cli, Command};
+use crate::cli::{Cli, Command, WorkArgs};
 use crate::error::XtaskError;
+use crate::interrupt;
+use topo_analysis::SweepSettings;
 
 /// Runs the command.
 pub fn dispatch(cli: Cli) -> Result<(), XtaskError> {
     match cli.command {
         Command::Figures(args) => figures::run(&args),
         Command::Run(args) => run::run(&args),
+        Command::Accuracy(args) => accuracy::run(&args),
         Command::Test(args) => test::run(&args),
         Command::Ci => ci::run(),
         Command::Bench(args) => bench::run(&args),
     }
+}
+
+/// What the options of a computation ask for.
+fn settings(work: &WorkArgs) -> Result<SweepSettings, XtaskError> {
+    Ok(SweepSettings {
+        out: work.out.clone(),
+        jobs: threads(work.jobs)?,
+        fresh: work.fresh,
+        interrupt: interrupt::install(),
+    })
 }
 
 /// Gives rayon `jobs` threads, or all processors, and returns the number (0 for all).

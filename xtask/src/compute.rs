@@ -9,8 +9,8 @@ use std::path::Path;
 use std::sync::OnceLock;
 use std::time::Instant;
 use topo_analysis::{
-    AnalysisError, Cuts, ElasticScene, Event, Preset, SweepReport, SweepSettings, run_sweep,
-    tight_shapes, with_jobs, write_knots,
+    ACCURACY_CASES, AnalysisError, Cuts, ElasticScene, Event, Preset, SweepReport, SweepSettings,
+    measure_accuracy, quantile, run_sweep, tight_shapes, with_jobs, write_knots, write_table,
 };
 use topo_core::Interrupt;
 use topo_knots::KnotTable;
@@ -87,7 +87,81 @@ pub fn tables(
             .insert("elastic sweep".to_owned(), start.elapsed().as_secs_f64());
         let runs = format!("{} computed, {} reused", report.n_computed, report.n_reused);
         provenance.presets.insert("Elastic runs".to_owned(), runs);
+        let start = Instant::now();
+        for variant in scene.friction_variants() {
+            sweep(&variant, &table, &settings)?;
+        }
+        provenance.wall_seconds.insert(
+            "friction variants".to_owned(),
+            start.elapsed().as_secs_f64(),
+        );
     }
+    Ok(())
+}
+
+/// Compares the discharge times of a preset with much finer runs of the same cuts, prints and writes the table.
+pub fn accuracy(preset: Preset, settings: &SweepSettings) -> Result<(), XtaskError> {
+    let scene = ElasticScene::published(preset);
+    let table = KnotTable::builtin();
+    topo_analysis::writable(&settings.out)?;
+    let names: Vec<String> = scene.cases(&table)?.into_iter().map(|c| c.knot).collect();
+    let names: Vec<String> = names.iter().step_by(scene.twists.len()).cloned().collect();
+    let stop = &settings.interrupt;
+    let progress = Progress::start("accuracy", names.len() + ACCURACY_CASES.len());
+    let told = |event: Event<'_>| match event {
+        Event::Knot { name, .. } | Event::Case { name, .. } => progress.done(name),
+        _ => {}
+    };
+    let rows = with_jobs(settings.jobs, || {
+        let shapes = tight_shapes(&names, &table, &scene.tighten, &settings.out, stop, &told)?;
+        measure_accuracy(&scene, &ACCURACY_CASES, &table, &shapes, stop, &told)
+    })??;
+    progress.finish();
+    interrupt::check(stop)?;
+    let path = settings.out.join("accuracy.csv");
+    write_table(&path, &rows)?;
+    println!(
+        "knot    theta'h     cut     t50   error      t99   error  E/E_ref   CPU s  CPU s of reference"
+    );
+    for r in &rows {
+        let cell = |t: Option<f64>| t.map_or_else(|| "      -".to_owned(), |t| format!("{t:7.3}"));
+        let error =
+            |e: Option<f64>| e.map_or_else(|| "      -".to_owned(), |e| format!("{e:+6.2}%"));
+        println!(
+            "{:6} {:+8.2} {:7.4} {} {}  {} {} {:8.4} {:7.2} {:7.2}",
+            r.knot,
+            r.twist,
+            r.cut,
+            cell(r.t50),
+            error(r.t50_error_percent),
+            cell(r.t99),
+            error(r.t99_error_percent),
+            r.energy_ratio,
+            r.cpu_seconds,
+            r.cpu_seconds_reference
+        );
+    }
+    for (name, errors) in [
+        (
+            "t50",
+            rows.iter()
+                .filter_map(|r| r.t50_error_percent)
+                .collect::<Vec<_>>(),
+        ),
+        (
+            "t99",
+            rows.iter().filter_map(|r| r.t99_error_percent).collect(),
+        ),
+    ] {
+        let sizes = || errors.iter().map(|e| e.abs());
+        if let (Some(median), Some(most)) = (quantile(sizes(), 0.5), quantile(sizes(), 0.9)) {
+            println!(
+                "{name}: error of {} cases, median {median:.2} %, 90th percentile {most:.2} %",
+                errors.len()
+            );
+        }
+    }
+    println!("written to {}", path.display());
     Ok(())
 }
 
@@ -122,10 +196,7 @@ pub fn scene(file: &Path, cuts: Option<&str>, settings: &SweepSettings) -> Resul
             println!("       warning: {warning}");
         }
     }
-    println!(
-        "written to {}",
-        ElasticScene::folder(&settings.out).display()
-    );
+    println!("written to {}", scene.results(&settings.out).display());
     Ok(())
 }
 
@@ -162,7 +233,7 @@ fn sweep(
     }
 }
 
-fn preset(quality: Quality) -> Preset {
+pub fn preset(quality: Quality) -> Preset {
     match quality {
         Quality::Draft => Preset::Draft,
         Quality::Standard => Preset::Standard,
