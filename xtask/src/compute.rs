@@ -122,10 +122,7 @@ pub fn scene(file: &Path, cuts: Option<&str>, settings: &SweepSettings) -> Resul
             println!("       warning: {warning}");
         }
     }
-    println!(
-        "written to {}",
-        ElasticScene::folder(&settings.out).display()
-    );
+    println!("written to {}", scene.results(&settings.out).display());
     Ok(())
 }
 

@@ -51,7 +51,7 @@ pub fn run() -> Result<(), XtaskError> {
 
 /// Packs every crate and builds it from its package, as a stranger would.
 ///
-/// Cargo takes a package of a given version for unchanging and would build against what an
+/// Cargo takes a package of a given version for unchanging and could build against what an
 /// earlier run left; so the workspace's own crates are forgotten first, in a folder of their
 /// own. It only counts whether they build, not how fast they run.
 fn package() -> Result<std::process::Command, XtaskError> {
