@@ -88,8 +88,11 @@ pub(crate) fn certify(
     };
     // neighbours along the rod, which the contact list leaves out
     let joined = from.is_closed() || pairs.is_cyclic();
-    let width =
-        ((pairs.window().outer() / from.rest_length()).ceil() as usize + 1).min(n_edges / 2);
+    let width = ((pairs.window().outer() / from.rest_length())
+        .min(n_edges as f64)
+        .ceil() as usize
+        + 1)
+    .min(n_edges / 2);
     for i in 0..n_edges {
         for k in 2..=width {
             let j = i + k;

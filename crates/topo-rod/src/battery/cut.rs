@@ -93,7 +93,7 @@ impl CutRod {
     /// the tips may from now on touch each other as strands do.
     pub fn tips_have_parted(state: &RodState, distance: f64, window: f64) -> bool {
         let (x, n) = (state.vertices(), state.n_vertices());
-        let reach = (window / state.rest_length()).ceil() as usize;
+        let reach = (window / state.rest_length()).ceil().min(n as f64) as usize;
         let square = distance * distance;
         (0..=reach.min(n - 1)).all(|i| {
             (0..=(reach - i).min(n - 1)).all(|k| {
