@@ -2,8 +2,8 @@
 
 use topo_core::{Interrupt, Polyline, Rejection, StopReason};
 use topo_rod::{
-    Accuracy, ChargeSettings, ChargedRod, ContactParameters, Discharge, FrictionParameters, Guards,
-    IntegratorKind, RodBattery, RodParameters,
+    Accuracy, ChargeSettings, ChargedRod, ContactParameters, CutSite, Discharge, DischargeSettings,
+    FrictionParameters, Guards, IntegratorKind, RodBattery, RodParameters,
 };
 use topo_tests::curves::{figure_eight, mirrored, trefoil};
 use topo_tests::run::discharge;
@@ -213,17 +213,14 @@ fn law_forced_crossing_is_caught_by_the_certificate() {
         report.stop, report.time, report.rejections
     );
     assert!(report.rejections.count("crossing") > 0);
-    assert!(
-        matches!(
-            report.stop,
-            StopReason::StepTooSmall {
-                last: Rejection::Crossing { .. },
-                ..
-            }
-        ),
-        "{}",
-        report.stop
+    let stuck = matches!(
+        report.stop,
+        StopReason::StepTooSmall {
+            last: Rejection::Crossing { .. },
+            ..
+        } | StopReason::StepLimit { .. }
     );
+    assert!(stuck, "{}", report.stop);
     assert!(report.link_drift.unwrap() < 1e-8, "a strand has passed");
     // the same with contact goes through
     let parameters = RodParameters {
@@ -240,6 +237,40 @@ fn law_forced_crossing_is_caught_by_the_certificate() {
     .unwrap();
     let report = charged(&battery, 2.0).record().report.clone();
     assert!(report.stop.is_success(), "{}", report.stop);
+}
+
+/// A cut takes the bend and the twist of the vertex that it doubles, and nothing else.
+#[test]
+fn law_cut_removes_what_its_vertex_held() {
+    let parameters = RodParameters {
+        contact: None,
+        friction: None,
+        ..twisted(60, 1.0)
+    };
+    let charged = charged(&battery(&start_trefoil(), parameters, 2e-3), 0.05);
+    let closed = charged.state();
+    let (vertex, l0) = (17, closed.rest_length());
+    let cut = charged.cut(CutSite::At(17.0 / 60.0)).unwrap();
+    assert_eq!((cut.vertex, cut.state.n_vertices()), (vertex, 61));
+    let (first, last) = (cut.state.vertices()[0], cut.state.vertices()[60]);
+    assert_eq!(
+        (first, last),
+        (closed.vertices()[vertex], closed.vertices()[vertex])
+    );
+    let held = closed.twists()[vertex];
+    let dropped = (closed.total_twist() - cut.state.total_twist()) * std::f64::consts::TAU;
+    assert!((dropped / held - 1.0).abs() < 1e-10, "{dropped} of {held}");
+    let cosine = closed.tangent(vertex - 1).dot(&closed.tangent(vertex));
+    let bend = (1.0 - cosine) / (2.0 * l0 * (1.0 + cosine));
+    let twist = held * held / (1.3 * 8.0 * l0);
+    let settings = DischargeSettings {
+        longest: 1e-3,
+        ..Default::default()
+    };
+    let run = cut.discharge(&settings, &Interrupt::new()).unwrap();
+    let removed = run.removed * closed.length() / std::f64::consts::PI;
+    println!("removed {removed:.8}, held {:.8}", bend + twist);
+    assert!((removed / (bend + twist) - 1.0).abs() < 1e-9);
 }
 
 /// What the scene leaves out is neither worked nor stored nor booked.

@@ -1,0 +1,182 @@
+//! What the documentation promises exists: every test that it names, every work that it cites.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+/// Every Rust file of the workspace with its text.
+fn sources() -> Vec<(PathBuf, String)> {
+    let mut folders: Vec<PathBuf> = ["crates", "tests", "xtask", "benches"]
+        .map(|f| root().join(f))
+        .to_vec();
+    let mut files = Vec::new();
+    while let Some(folder) = folders.pop() {
+        let Ok(entries) = fs::read_dir(&folder) else {
+            continue;
+        };
+        for path in entries.map(|e| e.unwrap().path()) {
+            if path.is_dir() && path.file_name().is_some_and(|n| n != "target") {
+                folders.push(path);
+            } else if path.extension().is_some_and(|e| e == "rs") {
+                let text = fs::read_to_string(&path).unwrap();
+                files.push((path, text));
+            }
+        }
+    }
+    assert!(files.len() > 50, "only {} files found", files.len());
+    files
+}
+
+/// Names of functions marked as tests.
+fn tests_in(text: &str) -> Vec<&str> {
+    let mut names = Vec::new();
+    let mut is_test = false;
+    for line in text.lines().map(str::trim) {
+        if line == "#[test]" {
+            is_test = true;
+        } else if let Some(rest) = line.strip_prefix("fn ").filter(|_| is_test) {
+            names.push(&rest[..rest.find(['(', '<']).unwrap_or(rest.len())]);
+            is_test = false;
+        }
+    }
+    names
+}
+
+fn all_tests(sources: &[(PathBuf, String)]) -> BTreeSet<&str> {
+    let tests: BTreeSet<_> = sources
+        .iter()
+        .flat_map(|(_, text)| tests_in(text))
+        .collect();
+    assert!(tests.contains("docs_name_only_existing_tests"));
+    tests
+}
+
+/// What stands between backticks and reads like the name of a test.
+fn quoted_names(text: &str) -> impl Iterator<Item = &str> {
+    let is_name = |s: &&str| {
+        !s.is_empty()
+            && s.chars()
+                .all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_')
+    };
+    text.split('`').skip(1).step_by(2).filter(is_name)
+}
+
+/// The lines of a documentation comment that follow a heading, up to the next heading or the end of the comment.
+fn section<'a>(text: &'a str, heading: &'a str) -> impl Iterator<Item = &'a str> {
+    let mut inside = false;
+    text.lines().filter(move |line| {
+        let comment = line
+            .trim()
+            .strip_prefix("//")
+            .map(|l| l.trim_start_matches(['/', '!']).trim());
+        match comment {
+            Some(c) if c.starts_with('#') => {
+                inside = c == heading;
+                false
+            }
+            Some(_) => inside,
+            None => {
+                inside = false;
+                false
+            }
+        }
+    })
+}
+
+/// Every test named in docs/validation.md (in the last column of its tables) or under "# Validation" exists.
+#[test]
+fn docs_name_only_existing_tests() {
+    let sources = sources();
+    let tests = all_tests(&sources);
+    let page = fs::read_to_string(root().join("docs/validation.md")).unwrap();
+    let mut named = 0;
+    for row in page.lines().filter(|l| l.starts_with('|')) {
+        let last = row.trim_end_matches('|').rsplit('|').next().unwrap_or("");
+        for name in quoted_names(last) {
+            assert!(
+                tests.contains(name),
+                "docs/validation.md names `{name}`, which is no test"
+            );
+            named += 1;
+        }
+    }
+    assert!(named > 30, "only {named} tests named");
+    for (path, text) in &sources {
+        for name in section(text, "# Validation").flat_map(quoted_names) {
+            assert!(
+                tests.contains(name),
+                "{} names `{name}`, which is no test",
+                path.display()
+            );
+        }
+    }
+}
+
+/// Every test of physics, here, is a row of docs/validation.md.
+#[test]
+fn docs_list_every_physics_test() {
+    let sources = sources();
+    let page = fs::read_to_string(root().join("docs/validation.md")).unwrap();
+    let listed: BTreeSet<_> = quoted_names(&page).collect();
+    for name in all_tests(&sources) {
+        if ["val_", "law_"].iter().any(|p| name.starts_with(p)) {
+            assert!(listed.contains(name), "docs/validation.md lacks `{name}`");
+        }
+    }
+}
+
+fn is_key(s: &str) -> bool {
+    let letters = s.trim_start_matches(|c: char| c.is_ascii_lowercase());
+    let word = letters.trim_start_matches(|c: char| c.is_ascii_digit());
+    letters.len() < s.len()
+        && letters.len() - word.len() == 4
+        && (letters.starts_with("18") || letters.starts_with("19") || letters.starts_with("20"))
+        && word.chars().all(|c| c.is_ascii_lowercase())
+}
+
+/// Every key cited in the sources or in docs/ has an entry in docs/references.bib, and no key has two.
+#[test]
+fn docs_cite_only_known_works() {
+    let bib = fs::read_to_string(root().join("docs/references.bib")).unwrap();
+    let keys: Vec<&str> = bib
+        .lines()
+        .filter(|l| l.starts_with('@'))
+        .filter_map(|l| l.split(['{', ',']).nth(1))
+        .collect();
+    let known: BTreeSet<_> = keys.iter().copied().collect();
+    assert_eq!(keys.len(), known.len(), "a key has two entries");
+    assert!(known.iter().all(|k| is_key(k)), "{known:?}");
+    let mut cited = BTreeSet::new();
+    for (path, text) in &sources() {
+        let comments = text.lines().filter(|l| l.trim_start().starts_with("//"));
+        let bracketed = comments.flat_map(|l| l.split(['[', ']']).skip(1).step_by(2));
+        let referred = section(text, "# References").flat_map(quoted_names);
+        for key in bracketed.chain(referred).filter(|k| is_key(k)) {
+            assert!(
+                known.contains(key),
+                "{} cites {key}, unknown to docs/references.bib",
+                path.display()
+            );
+            cited.insert(key.to_owned());
+        }
+    }
+    assert!(cited.len() > 20, "only {} works cited", cited.len());
+    for entry in fs::read_dir(root().join("docs")).unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_some_and(|e| e == "md") {
+            let text = fs::read_to_string(&path).unwrap();
+            for key in text
+                .split(['[', ']'])
+                .skip(1)
+                .step_by(2)
+                .filter(|k| is_key(k))
+            {
+                assert!(known.contains(key), "{} cites {key}", path.display());
+            }
+        }
+    }
+}
