@@ -27,6 +27,9 @@ const MOEBIUS_STEPS: usize = 120;
 /// Cancelling pairs of generators put into a word to vary its embedding.
 const N_PADS: usize = 2;
 
+/// Edges at which the ropelength of a smoothed curve is measured.
+const FINE_EDGES: usize = 800;
+
 /// A tight knot with the evidence for it.
 ///
 /// # Validation
@@ -59,7 +62,8 @@ pub struct Centreline {
 impl TightKnot {
     /// Centreline of `n_edges` equal edges for a rod.
     ///
-    /// A tight curve has jumps of curvature, so two passes of the binomial filter (1, 2, 1)/4 come first.
+    /// A tight curve has jumps of curvature, so two passes of the binomial filter (1, 2, 1)/4 come first. The ropelength is
+    /// that of the smoothed curve at a fixed fine resolution: contact diameters derived from it must not depend on `n_edges`.
     ///
     /// # Errors
     /// [`KnotError::Setting`] for fewer than 8 edges, [`KnotError::Curve`] if resampling fails.
@@ -72,9 +76,13 @@ impl TightKnot {
                 expected,
             });
         }
-        let curve = self.curve.smoothed(2)?.resampled(n_edges)?;
-        let ropelength = curve.length() / thickness(&curve).tau;
-        Ok(Centreline { curve, ropelength })
+        let smooth = self.curve.smoothed(2)?;
+        let fine = smooth.resampled(FINE_EDGES)?;
+        let ropelength = fine.length() / thickness(&fine).tau;
+        Ok(Centreline {
+            curve: smooth.resampled(n_edges)?,
+            ropelength,
+        })
     }
 }
 

@@ -43,7 +43,8 @@ fn draw(context: &Context) -> Result<Drawn, XtaskError> {
     canvas.letter(376.0, 496.0, "e");
     times::all(&sweep, &mut canvas, [422.0, 490.0], &mut table);
     canvas.footnote(&face(&sweep, context.quality));
-    let finding = format!("{} {path} {bar}", times::finding(&sweep));
+    let robust = times::robust(context.results);
+    let finding = format!("{}{robust} {path} {bar}", times::finding(&sweep));
     Ok(Drawn {
         picture: canvas.finish()?,
         csv: table.finish(),

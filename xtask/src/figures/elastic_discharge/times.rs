@@ -9,6 +9,8 @@ use crate::plot::panel::{Axis, Panel};
 use crate::plot::style::Style;
 use crate::plot::text;
 use kuva::prelude::{LinePlot, Plot, ScatterPlot};
+use std::path::Path;
+use topo_analysis::{SweepRow, read_table, resonances};
 
 const SIZE: [f64; 2] = [266.0, 178.0];
 
@@ -125,6 +127,42 @@ pub fn all(sweep: &Sweep, canvas: &mut Canvas, at: [f64; 2], table: &mut Table) 
 fn bar(x: f64, low: f64, high: f64, ink: &str, width: f64) -> Plot {
     let line = LinePlot::new().with_data(vec![(x, low), (x, high)]);
     Plot::Line(line.with_color(ink).with_stroke_width(width))
+}
+
+/// A knot whose time exceeds the median of all by this factor is called slow.
+const SLOW: f64 = 1.5;
+
+/// Which untwisted knots are slow, and which of them also with the friction range at the contact diameter and in the reading
+/// `tight`; empty while those runs are missing.
+pub fn robust(results: &Path) -> String {
+    let read = |folder: &str| read_table::<SweepRow>(&results.join(folder).join("sweep.csv")).ok();
+    let (Some(mut rows), Some(contact), Some(tight)) = (
+        read("elastic"),
+        read("elastic-contact-range"),
+        read("elastic-tight"),
+    ) else {
+        return String::new();
+    };
+    rows.retain(|r| r.twist == 0.0);
+    let found = resonances(&rows, SLOW, &[&contact, &tight]);
+    let list = |robust: bool| {
+        let names: Vec<String> = found
+            .iter()
+            .filter(|r| r.robust || !robust)
+            .map(|r| format!("{} {}", text::knot_name(&r.knot), text::number(r.ratio, 1)))
+            .collect();
+        if names.is_empty() {
+            "none".to_owned()
+        } else {
+            names.join(", ")
+        }
+    };
+    format!(
+        " Untwisted knots slower than {SLOW} times the median (ratio): {}; of these also with friction range = contact \
+         diameter and in the reading tight: {}.",
+        list(false),
+        list(true)
+    )
 }
 
 /// What the times say.
