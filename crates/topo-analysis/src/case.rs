@@ -147,7 +147,7 @@ pub(crate) fn run(
     } else {
         runs.iter().map(|r| r.2.clone()).collect()
     };
-    write_case(
+    let written = write_case(
         scene,
         case,
         tight,
@@ -157,7 +157,14 @@ pub(crate) fn run(
         &rows,
         charge_seconds,
         folder,
-    )?;
+    );
+    if let Err(error) = written {
+        // a folder without its run.json is of no use to anybody; what matters is the first error
+        if let Err(left) = std::fs::remove_dir_all(folder) {
+            tracing::debug!(folder = %folder.display(), %left, "an incomplete case stays behind");
+        }
+        return Err(error);
+    }
     Ok(Some(rows))
 }
 
@@ -360,6 +367,19 @@ fn snapshot_indices(samples: &[RodSample]) -> Vec<usize> {
     indices
 }
 
+/// Takes away the mark of completeness of an earlier run, so that a folder never mixes two.
+fn forget(folder: &Path) -> Result<(), AnalysisError> {
+    match std::fs::remove_file(folder.join("run.json")) {
+        Err(source) if source.kind() != std::io::ErrorKind::NotFound => {
+            Err(AnalysisError::Output {
+                path: folder.to_owned(),
+                source,
+            })
+        }
+        _ => Ok(()),
+    }
+}
+
 #[allow(clippy::too_many_arguments)] // one writer of one folder: everything a case has made
 fn write_case(
     scene: &ElasticScene,
@@ -374,6 +394,7 @@ fn write_case(
 ) -> Result<(), AnalysisError> {
     let area = std::f64::consts::PI;
     make_folder(folder)?;
+    forget(folder)?;
     let state = charged.state();
     let vertices: Vec<ChargedVertex> = (0..state.n_vertices())
         .map(|i| {

@@ -215,3 +215,70 @@ pub fn run_sweep(
         shapes,
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SCENE: &str = "[rod]\nknot = \"3_1\"\ntwist = [0.0, 1.0]\n[rod.contact]\n[rod.friction]\n[charge]\nduration = 0.05\n[discharge]\nuntil_released = 0.3\nclosures = 4\n[accuracy]\nedges = 60\ntolerance = 1e-2\n";
+
+    fn settings(out: &Path, jobs: usize) -> SweepSettings {
+        SweepSettings {
+            out: out.to_owned(),
+            jobs,
+            fresh: false,
+            interrupt: Interrupt::new(),
+        }
+    }
+
+    fn timeless(report: &SweepReport) -> Vec<SweepRow> {
+        let drop = |r: &SweepRow| SweepRow {
+            cpu_seconds: 0.0,
+            ..r.clone()
+        };
+        report.rows.iter().map(drop).collect()
+    }
+
+    #[test]
+    fn finished_cases_are_kept_damaged_ones_computed_again_and_jobs_change_nothing() {
+        let table = KnotTable::builtin();
+        let scene = ElasticScene::parse(SCENE, Path::new("scene.toml")).unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let first = run_sweep(&scene, &table, &settings(folder.path(), 2), &|_| {}).unwrap();
+        assert_eq!(
+            (first.n_computed, first.n_reused, first.rows.len()),
+            (2, 0, 2)
+        );
+        let results = folder.path().join("elastic");
+        let read = |file: &str| std::fs::read(results.join(file)).unwrap();
+        let series = read("3_1_twist+0.00_shrunk_n60/series.csv");
+        let again = run_sweep(&scene, &table, &settings(folder.path(), 2), &|_| {}).unwrap();
+        assert_eq!((again.n_computed, again.n_reused), (0, 2));
+        assert_eq!(again.rows, first.rows);
+        let mark = results.join("3_1_twist+0.00_shrunk_n60/run.json");
+        std::fs::write(&mark, "{\"fingerprint\": ").unwrap();
+        let mended = run_sweep(&scene, &table, &settings(folder.path(), 1), &|_| {}).unwrap();
+        assert_eq!((mended.n_computed, mended.n_reused), (1, 1));
+        assert_eq!(timeless(&mended), timeless(&first));
+        assert_eq!(read("3_1_twist+0.00_shrunk_n60/series.csv"), series);
+        let mut other = scene.clone();
+        other.accuracy.tolerance = 2e-2;
+        let changed = run_sweep(&other, &table, &settings(folder.path(), 0), &|_| {}).unwrap();
+        assert_eq!(changed.n_computed, 2);
+    }
+
+    #[test]
+    fn an_interrupted_sweep_writes_no_case_it_has_not_finished() {
+        let table = KnotTable::builtin();
+        let scene = ElasticScene::parse(SCENE, Path::new("scene.toml")).unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let settings = settings(folder.path(), 1);
+        settings.interrupt.request();
+        let report = run_sweep(&scene, &table, &settings, &|_| {}).unwrap();
+        assert!(report.interrupted && report.rows.is_empty());
+        let entries: Vec<_> = std::fs::read_dir(folder.path().join("elastic"))
+            .unwrap()
+            .collect();
+        assert_eq!(entries.len(), 1, "only the table");
+    }
+}
