@@ -82,7 +82,7 @@ pub struct AccuracyRow {
 }
 
 /// The reference: twice the edges, tolerance 1e-4 h, g = 1 − 1/√2, a fresh Newton matrix every step.
-pub fn reference(scene: &ElasticScene) -> ElasticScene {
+pub fn reference_scene(scene: &ElasticScene) -> ElasticScene {
     let mut fine = scene.clone();
     fine.rod.n_edges = 2 * scene.rod.n_edges;
     fine.accuracy = Accuracy {
@@ -94,7 +94,7 @@ pub fn reference(scene: &ElasticScene) -> ElasticScene {
     fine
 }
 
-/// Compares the discharges of `scene` with those of [`reference`] on the given knots and twists, cut at the same place.
+/// Compares the discharges of `scene` with those of [`reference_scene`] on the given knots and twists, cut at the same place.
 ///
 /// # Errors
 /// As [`run_sweep`](crate::run_sweep).
@@ -106,7 +106,7 @@ pub fn measure_accuracy(
     interrupt: &Interrupt,
     progress: &(dyn Fn(Event<'_>) + Sync),
 ) -> Result<Vec<AccuracyRow>, AnalysisError> {
-    let fine = reference(scene);
+    let fine = reference_scene(scene);
     let n_done = std::sync::atomic::AtomicUsize::new(0);
     let rows: Vec<Option<AccuracyRow>> = cases
         .par_iter()

@@ -18,7 +18,7 @@ mod table;
 mod timeline;
 mod times;
 
-pub use accuracy::{ACCURACY_CASES, AccuracyRow, measure_accuracy, reference};
+pub use accuracy::{ACCURACY_CASES, AccuracyRow, measure_accuracy, reference_scene};
 pub use case::RESULTS_VERSION;
 pub use error::AnalysisError;
 pub use imperfection::perturbed;

@@ -14,7 +14,7 @@ use crate::contact::ActivePair;
 /// `val_friction_of_two_sliding_rods_matches_the_integral`, `law_friction_never_adds_energy`.
 ///
 /// # References
-/// [patil2020discharging], [patil2020topological].
+/// `patil2020discharging`, `patil2020topological`.
 #[derive(Debug, Clone, Copy)]
 pub struct Friction {
     /// η_f/η.

@@ -68,7 +68,7 @@ impl Chain {
 /// Closed rods have N vertices and N twists; open rods N + 1 vertices and N − 1 twists (those of the ends are kept at 0).
 ///
 /// # References
-/// The discrete rod of [bergou2008], with the twist per vertex as the variable.
+/// The discrete rod of `bergou2008`, with the twist per vertex as the variable.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct RodState {
     vertices: Vec<Vector3<f64>>,
