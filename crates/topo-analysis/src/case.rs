@@ -84,6 +84,14 @@ pub(crate) fn charge(
     .map_err(refuse)
 }
 
+/// One cut of a charged rod, followed to its end.
+struct FollowedCut {
+    discharge: Discharge,
+    times: DischargeTimes,
+    timeline: Timeline,
+    row: SweepRow,
+}
+
 /// Runs a case and writes its folder; `None` when interrupted, and then nothing is written.
 pub(crate) fn run(
     scene: &ElasticScene,
@@ -131,13 +139,25 @@ pub(crate) fn run(
                 .map(|s| (s.time, s.state.vertices()))
                 .collect();
             let timeline = Timeline::of(&curves, table, scene.timeline, scene.seed)?;
+            let times = DischargeTimes::of(
+                &discharge.record.curve,
+                &ELASTIC,
+                discharge.start,
+                &ELASTIC_SHARES,
+            );
             let row = discharge_row(
                 &base,
                 &discharge,
+                &times,
                 &timeline,
                 clock.seconds() + charge_seconds / sites.len() as f64,
             );
-            runs.push((discharge, timeline, row));
+            runs.push(FollowedCut {
+                discharge,
+                times,
+                timeline,
+                row,
+            });
         }
     } else {
         base.cpu_seconds = charge_seconds;
@@ -145,7 +165,7 @@ pub(crate) fn run(
     let rows: Vec<SweepRow> = if runs.is_empty() {
         vec![base]
     } else {
-        runs.iter().map(|r| r.2.clone()).collect()
+        runs.iter().map(|r| r.row.clone()).collect()
     };
     let written = write_case(
         scene,
@@ -238,16 +258,11 @@ fn charged_row(case: &ElasticCase, charged: &ChargedRod, table: &KnotTable) -> S
 fn discharge_row(
     base: &SweepRow,
     discharge: &Discharge,
+    times: &DischargeTimes,
     timeline: &Timeline,
     cpu_seconds: f64,
 ) -> SweepRow {
     let report = &discharge.record.report;
-    let times = DischargeTimes::of(
-        &discharge.record.curve,
-        &ELASTIC,
-        discharge.start,
-        &ELASTIC_SHARES,
-    );
     let at = |share| times.at(share).map(|t| t.value);
     let mut row = SweepRow {
         cut: discharge.at,
@@ -387,7 +402,7 @@ fn write_case(
     tight: &TightKnot,
     table: &KnotTable,
     charged: &ChargedRod,
-    runs: &[(Discharge, Timeline, SweepRow)],
+    runs: &[FollowedCut],
     rows: &[SweepRow],
     charge_seconds: f64,
     folder: &Path,
@@ -420,7 +435,12 @@ fn write_case(
     write_table(&folder.join("charge.csv"), &series)?;
     let mut series = Vec::new();
     let mut snapshots = Vec::new();
-    for (discharge, timeline, _) in runs {
+    for FollowedCut {
+        discharge,
+        timeline,
+        ..
+    } in runs
+    {
         let samples = &discharge.record.samples;
         series.extend(
             samples
@@ -453,8 +473,7 @@ fn write_case(
     let entry = table.get(&case.knot)?;
     let cuts: Vec<_> = runs
         .iter()
-        .map(|(d, timeline, row)| {
-            let times = DischargeTimes::of(&d.record.curve, &ELASTIC, d.start, &ELASTIC_SHARES);
+        .map(|FollowedCut { discharge: d, times, timeline, row }| {
             json!({
                 "cut": d.at, "energy_removed_by_cut": d.removed, "elastic_energy_after_cut": d.start, "tips_parted": d.parted,
                 "times": times, "knot_sequence": timeline.sequence(), "t_untie": row.t_untie, "report": d.record.report,
@@ -464,7 +483,7 @@ fn write_case(
         .collect();
     let ledger_residual = runs
         .iter()
-        .map(|r| r.0.record.report.ledger_residual)
+        .map(|r| r.discharge.record.report.ledger_residual)
         .fold(charged.record().report.ledger_residual, f64::max);
     let run = json!({
         "schema": "topo-elastic-case/1",

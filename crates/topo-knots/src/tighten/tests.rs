@@ -70,7 +70,7 @@ fn all_knots_are_tight() {
 }
 
 #[test]
-#[ignore = "long"]
+#[ignore = "long: 1 to 2 minutes"]
 fn long_all_knots_are_tight_at_eight_vertices_a_unit() {
     check_all(&TightenSettings::standard(), 0.0025, 0.01);
 }
