@@ -35,8 +35,13 @@ impl Case {
             && (5.0..=100.0).contains(&self.contact)
     }
 
-    /// Charges for a while, cuts, discharges for a while.
-    fn run(&self, duration: f64, max_steps: u64) {
+    /// Charges for a while, cuts, discharges for a while; whether it came to the end of that while.
+    fn run(&self, duration: f64, max_steps: u64) -> bool {
+        self.run_for(Some(duration), max_steps)
+    }
+
+    /// As [`run`](Self::run), for the default durations without one.
+    fn run_for(&self, duration: Option<f64>, max_steps: u64) -> bool {
         let parameters = RodParameters {
             n_edges: self.n_edges,
             stretch_ratio: self.stretch_ratio,
@@ -57,10 +62,12 @@ impl Case {
         let curve = trefoil(400, 2.0, 1.0);
         let battery =
             RodBattery::new(&parameters, &accuracy, Guards::default(), &curve, 45.0).unwrap();
-        let charge = ChargeSettings {
-            duration,
-            ..Default::default()
-        };
+        let mut charge = ChargeSettings::default();
+        let mut settings = DischargeSettings::default();
+        if let Some(duration) = duration {
+            charge.duration = duration;
+            settings.longest = duration;
+        }
         let charged = battery.charge(&charge, &Interrupt::new()).unwrap();
         self.judge(&charged.record().report.stop, "charging");
         assert!(
@@ -68,18 +75,18 @@ impl Case {
             "{self:?}"
         );
         if !charged.record().report.stop.is_success() {
-            return;
+            return false;
         }
-        let settings = DischargeSettings {
-            longest: duration,
-            ..Default::default()
-        };
         let run = charged
             .cut(CutSite::MaximumEnergyDensity)
             .and_then(|cut| cut.discharge(&settings, &Interrupt::new()))
             .unwrap();
         self.judge(&run.record.report.stop, "discharging");
         assert_finite(&run);
+        match duration {
+            Some(_) => run.record.report.stop.is_success(),
+            None => run.is_finished(),
+        }
     }
 
     fn judge(&self, stop: &StopReason, phase: &str) {
@@ -178,35 +185,85 @@ fn law_runs_at_the_extremes_finish_or_say_why() {
     .run(0.002, 2_000);
 }
 
-/// The grid of ends and middles, charged and discharged for longer; of the finest rods its edges.
-#[test]
-#[ignore = "long: 15 minutes"]
-fn long_extremes() {
-    for n_edges in [50, 100, 200, 800, 1600] {
-        let fine = n_edges > 400;
-        let twists: &[f64] = if fine {
-            &[0.0, 4.0]
-        } else {
-            &[-4.0, -2.0, 0.0, 2.0, 4.0]
-        };
-        let frictions: &[f64] = if fine { &[0.1] } else { &[0.0, 0.1, 10.0] };
-        for &twist in twists {
-            for stretch_ratio in [0.5, 1.0, 5.0, 100.0, 1000.0] {
-                for contact in [5.0, 20.0, 100.0, 500.0] {
-                    for &friction in frictions {
-                        let case = Case {
-                            twist,
-                            stretch_ratio,
-                            n_edges,
-                            friction,
-                            contact,
-                        };
-                        case.run(if fine { 0.01 } else { 0.5 }, 50_000);
-                    }
+/// The grid of ends and middles at `n_edges`, charged and discharged for `duration`; returns how many of how many finished.
+fn grid(n_edges: usize, duration: f64, twists: &[f64], frictions: &[f64]) -> (usize, usize) {
+    let (mut finished, mut total) = (0, 0);
+    for &twist in twists {
+        for stretch_ratio in [0.5, 1.0, 5.0, 100.0, 1000.0] {
+            for contact in [5.0, 20.0, 100.0, 500.0] {
+                for &friction in frictions {
+                    let case = Case {
+                        twist,
+                        stretch_ratio,
+                        n_edges,
+                        friction,
+                        contact,
+                    };
+                    finished += usize::from(case.run(duration, 50_000));
+                    total += 1;
                 }
             }
         }
-        println!("{n_edges} edges done");
+    }
+    println!("{n_edges} edges: {finished} of {total} finished");
+    (finished, total)
+}
+
+const TWISTS: [f64; 5] = [-4.0, -2.0, 0.0, 2.0, 4.0];
+const FRICTIONS: [f64; 3] = [0.0, 0.1, 10.0];
+
+#[test]
+#[ignore = "long: 2 minutes"]
+fn long_extremes_of_50_edges() {
+    grid(50, 0.5, &TWISTS, &FRICTIONS);
+}
+
+#[test]
+#[ignore = "long: 4 minutes"]
+fn long_extremes_of_100_edges() {
+    grid(100, 0.5, &TWISTS, &FRICTIONS);
+}
+
+#[test]
+#[ignore = "long: 10 minutes"]
+fn long_extremes_of_200_edges() {
+    grid(200, 0.5, &TWISTS, &FRICTIONS);
+}
+
+#[test]
+#[ignore = "long: 5 minutes"]
+fn long_extremes_of_800_edges() {
+    grid(800, 0.02, &[0.0, 2.0, 4.0], &[0.1]);
+}
+
+#[test]
+#[ignore = "long: 5 minutes"]
+fn long_extremes_of_1600_edges() {
+    grid(1600, 0.005, &[0.0, 4.0], &[0.1]);
+}
+
+/// The corners of the inner range, charged in full and discharged until 0.1 % of the energy is left.
+#[test]
+#[ignore = "long: 10 minutes"]
+fn long_inner_range_discharges_to_the_end() {
+    for n_edges in [100, 800] {
+        let frictions: &[f64] = if n_edges == 100 { &[0.0, 10.0] } else { &[0.1] };
+        for twist in [-2.0, 0.0, 2.0] {
+            for (stretch_ratio, contact) in [(1.0, 5.0), (1.0, 100.0), (100.0, 5.0), (100.0, 100.0)]
+            {
+                for &friction in frictions {
+                    let case = Case {
+                        twist,
+                        stretch_ratio,
+                        n_edges,
+                        friction,
+                        contact,
+                    };
+                    assert!(case.run_for(None, 200_000), "{case:?}");
+                }
+            }
+        }
+        println!("{n_edges} edges: all corners discharged");
     }
 }
 

@@ -8,7 +8,8 @@ use topo_core::{Interrupt, Snapshot};
 use topo_knots::{KnotEntry, KnotTable, TightKnot, TightenSettings, ideal};
 
 use crate::AnalysisError;
-use crate::sweep::{Event, make_folder};
+use crate::folder::make_folder;
+use crate::progress::Event;
 use crate::table::{KnotRow, write_table};
 
 /// Tight shapes by name.

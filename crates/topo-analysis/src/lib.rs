@@ -5,28 +5,26 @@
 //!
 //! Energies are in E_0 = E_b h² L and times in T_0 = 2 L η/(h E_b), with L the row's own length.
 
-mod accuracy;
-mod case;
+mod elastic;
 mod error;
-mod imperfection;
+mod folder;
 mod knots;
-mod resonance;
-mod scene;
+mod progress;
 mod statistics;
-mod sweep;
 mod table;
 mod timeline;
 mod times;
 
-pub use accuracy::{ACCURACY_CASES, AccuracyRow, measure_accuracy, reference_scene};
-pub use case::RESULTS_VERSION;
+pub use elastic::{
+    ACCURACY_CASES, AccuracyRow, Cuts, ElasticCase, ElasticScene, Ensemble, NEAR_TIE, Names,
+    Numbers, Preset, RESULTS_VERSION, Regime, Resonance, SweepReport, crossover, ensembles,
+    measure_accuracy, perturbed, reference_scene, regime, resonances, run_sweep,
+};
 pub use error::AnalysisError;
-pub use imperfection::perturbed;
+pub use folder::writable;
 pub use knots::{Shapes, knots_folder, tight_shapes, write_knots};
-pub use resonance::{Ensemble, Regime, Resonance, crossover, ensembles, regime, resonances};
-pub use scene::{Cuts, ElasticCase, ElasticScene, NEAR_TIE, Names, Numbers, Preset};
+pub use progress::{Event, SweepSettings, with_jobs};
 pub use statistics::{Spread, median, quantile};
-pub use sweep::{Event, SweepReport, SweepSettings, run_sweep, with_jobs, writable};
 pub use table::{KnotRow, SweepRow, read_table, write_table};
 pub use timeline::{Timeline, TimelineSettings, TypedSample, UNKNOT};
 pub use times::{DischargeTimes, ELASTIC_SHARES, Interpolated};

@@ -1,4 +1,4 @@
-//! Scenes: TOML files that read like the experiment, and the cases they stand for.
+//! Scene files: TOML that reads like the experiment.
 //!
 //! ```toml
 //! [rod]
@@ -15,164 +15,18 @@
 //! preset = "standard"
 //! ```
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use serde::{Deserialize, Serialize};
-use topo_knots::TightenSettings;
 use topo_rod::{
     Accuracy, ChargeSettings, ContactParameters, DischargeSettings, Ends, FrictionParameters,
-    FrictionRange, IntegratorKind, Reading, RodParameters,
+    IntegratorKind, Reading, RodParameters,
 };
 
+use super::choices::{Cuts, Names, Numbers, Preset};
+use super::scene::ElasticScene;
 use crate::AnalysisError;
 use crate::timeline::TimelineSettings;
-
-/// One value, a list of them, or evenly spaced numbers.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(untagged)]
-pub enum Numbers {
-    /// One number.
-    One(f64),
-    /// A list.
-    List(Vec<f64>),
-    /// `n` numbers from `from` to `to`, both included.
-    Range {
-        /// First.
-        from: f64,
-        /// Last.
-        to: f64,
-        /// How many.
-        n: usize,
-    },
-}
-
-impl Numbers {
-    /// The numbers meant.
-    pub fn values(&self) -> Vec<f64> {
-        match self {
-            Self::One(x) => vec![*x],
-            Self::List(list) => list.clone(),
-            Self::Range { from, n: 1, .. } => vec![*from],
-            // halves and quarters come out exactly
-            Self::Range { from, to, n } => (0..*n)
-                .map(|k| from + (to - from) * k as f64 / (*n - 1) as f64)
-                .collect(),
-        }
-    }
-}
-
-/// One knot name or a list; "all" stands for the whole table.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(untagged)]
-pub enum Names {
-    /// One name.
-    One(String),
-    /// A list.
-    List(Vec<String>),
-}
-
-/// Which sites are cut.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(try_from = "String", into = "String")]
-pub enum Cuts {
-    /// The maximum of the smoothed energy density.
-    #[default]
-    Argmax,
-    /// Every local maximum within 3 % of the largest.
-    NearTies,
-    /// K evenly spaced sites.
-    All(usize),
-}
-
-impl TryFrom<String> for Cuts {
-    type Error = String;
-
-    fn try_from(text: String) -> Result<Self, String> {
-        let all = |k: &str| {
-            k.parse()
-                .ok()
-                .filter(|k| (1..=10_000).contains(k))
-                .map(Self::All)
-        };
-        match text.as_str() {
-            "argmax" => Ok(Self::Argmax),
-            "near-ties" => Ok(Self::NearTies),
-            other => other
-                .strip_prefix("all:")
-                .and_then(all)
-                .ok_or_else(|| format!("`{text}` is not a choice of cuts: write \"argmax\", \"near-ties\" or \"all:K\" with K from 1 to 10000")),
-        }
-    }
-}
-
-impl From<Cuts> for String {
-    fn from(cuts: Cuts) -> Self {
-        match cuts {
-            Cuts::Argmax => "argmax".into(),
-            Cuts::NearTies => "near-ties".into(),
-            Cuts::All(k) => format!("all:{k}"),
-        }
-    }
-}
-
-/// Share of the largest density within which a local maximum counts as a near tie.
-pub const NEAR_TIE: f64 = 0.03;
-
-/// How fine and how accurate.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Preset {
-    /// Minutes for all: N = 200, tolerance 1e-3 h.
-    #[default]
-    Draft,
-    /// N = 200, tolerance 5e-4 h, near-tied cuts.
-    Standard,
-    /// N = 400, tolerance 2e-4 h, near-tied cuts.
-    Paper,
-}
-
-impl Preset {
-    /// Name used in scenes and on figures.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Draft => "draft",
-            Self::Standard => "standard",
-            Self::Paper => "paper",
-        }
-    }
-
-    /// Edges N of a rod.
-    pub fn edges(self) -> usize {
-        if self == Self::Paper { 400 } else { 200 }
-    }
-
-    /// Local error aimed at, in h.
-    pub fn tolerance(self) -> f64 {
-        match self {
-            Self::Draft => 1e-3,
-            Self::Standard => 5e-4,
-            Self::Paper => 2e-4,
-        }
-    }
-
-    /// Cuts made where the scene does not say.
-    pub fn cuts(self) -> Cuts {
-        if self == Self::Draft {
-            Cuts::Argmax
-        } else {
-            Cuts::NearTies
-        }
-    }
-
-    /// How knots are tightened.
-    pub fn tighten(self) -> TightenSettings {
-        match self {
-            Self::Draft => TightenSettings::draft(),
-            Self::Standard => TightenSettings::standard(),
-            Self::Paper => TightenSettings::fine(),
-        }
-    }
-}
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -195,7 +49,7 @@ struct RodTable {
     seed: u64,
 }
 
-mod defaults {
+pub(super) mod defaults {
     pub fn slenderness() -> f64 {
         50.0
     }
@@ -253,93 +107,7 @@ struct File {
     accuracy: AccuracyTable,
 }
 
-/// An elastic experiment: which knots, how twisted, how cut, how accurately.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct ElasticScene {
-    /// Folder of its tables below the output folder.
-    pub folder: String,
-    /// Knot names; "all" stands for the whole table.
-    pub knots: Vec<String>,
-    /// θ'h of the cases; empty: no twist is modelled.
-    pub twists: Vec<f64>,
-    /// Material, reading and resolution, its twist not yet set.
-    pub rod: RodParameters,
-    /// Size of the random perturbation of the start curve, in h: symmetric states that are unstable are left by it.
-    pub imperfection: f64,
-    /// Seed of that perturbation and of the closures.
-    pub seed: u64,
-    /// Relaxation of the closed rod.
-    pub charge: ChargeSettings,
-    /// Sites cut.
-    pub cuts: Cuts,
-    /// Discharge of the open rod.
-    pub discharge: DischargeSettings,
-    /// Knot types while open.
-    pub timeline: TimelineSettings,
-    /// Integrator and tolerance.
-    pub accuracy: Accuracy,
-    /// Preset that the numbers started from.
-    pub preset: Preset,
-    /// How the start shapes are tightened.
-    pub tighten: TightenSettings,
-}
-
-/// One charge with its cuts.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct ElasticCase {
-    /// Knot type.
-    pub knot: String,
-    /// Material, twist, reading and resolution.
-    pub rod: RodParameters,
-}
-
-impl ElasticCase {
-    /// Folder name, unique within a scene.
-    pub fn name(&self) -> String {
-        let twist = self
-            .rod
-            .twist
-            .map_or("untwisted".to_owned(), |t| format!("twist{t:+.2}"));
-        format!(
-            "{}_{twist}_{}_n{}",
-            self.knot,
-            self.rod.reading.name(),
-            self.rod.n_edges
-        )
-    }
-}
-
 impl ElasticScene {
-    /// The published sweep: 14 knots at 17 twists.
-    pub fn published(preset: Preset) -> Self {
-        Self {
-            folder: "elastic".to_owned(),
-            knots: vec!["all".to_owned()],
-            twists: Numbers::Range {
-                from: -2.0,
-                to: 2.0,
-                n: 17,
-            }
-            .values(),
-            rod: RodParameters {
-                n_edges: preset.edges(),
-                ..RodParameters::default()
-            },
-            imperfection: defaults::imperfection(),
-            seed: defaults::seed(),
-            charge: ChargeSettings::default(),
-            cuts: preset.cuts(),
-            discharge: DischargeSettings::default(),
-            timeline: TimelineSettings::default(),
-            accuracy: Accuracy {
-                tolerance: preset.tolerance(),
-                ..Accuracy::default()
-            },
-            preset,
-            tighten: preset.tighten(),
-        }
-    }
-
     /// Reads a scene file.
     ///
     /// # Errors
@@ -496,66 +264,12 @@ impl ElasticScene {
             .map_err(|e| refuse(e.into()))?;
         Ok(scene)
     }
-
-    /// The cases of the scene, knots in the order given, twists inside.
-    pub fn cases(&self, table: &topo_knots::KnotTable) -> Result<Vec<ElasticCase>, AnalysisError> {
-        let mut names = Vec::new();
-        for name in &self.knots {
-            if name == "all" {
-                names.extend(table.names().map(str::to_owned));
-            } else {
-                names.push(table.get(name)?.name.clone());
-            }
-        }
-        let twists: Vec<Option<f64>> = if self.twists.is_empty() {
-            vec![None]
-        } else {
-            self.twists.iter().copied().map(Some).collect()
-        };
-        let case = |knot: &String, twist| ElasticCase {
-            knot: knot.clone(),
-            rod: RodParameters {
-                twist,
-                ..self.rod.clone()
-            },
-        };
-        Ok(names
-            .iter()
-            .flat_map(|knot| twists.iter().map(move |t| case(knot, *t)))
-            .collect())
-    }
-
-    /// Where files with the scene's tables lie below an output folder.
-    pub fn results(&self, out: &Path) -> PathBuf {
-        out.join(&self.folder)
-    }
-
-    /// The untwisted cases under the two other choices that separate knot type from friction: friction range equal to the
-    /// contact diameter, and the reading `tight`. Their tables lie in folders of their own.
-    pub fn friction_variants(&self) -> [Self; 2] {
-        let untwisted = Self {
-            twists: vec![0.0],
-            ..self.clone()
-        };
-        let mut contact = Self {
-            folder: "elastic-contact-range".to_owned(),
-            ..untwisted.clone()
-        };
-        if let Some(friction) = &mut contact.rod.friction {
-            friction.range = FrictionRange::Contact;
-        }
-        let mut tight = Self {
-            folder: "elastic-tight".to_owned(),
-            ..untwisted
-        };
-        tight.rod.reading = Reading::Tight;
-        [contact, tight]
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::elastic::ElasticCase;
 
     fn parse(text: &str) -> Result<ElasticScene, AnalysisError> {
         ElasticScene::parse(text, Path::new("scene.toml"))
@@ -579,15 +293,6 @@ mod tests {
             cases.iter().map(ElasticCase::name).collect::<Vec<_>>(),
             ["3_1_untwisted_shrunk_n200", "4_1_untwisted_shrunk_n200"]
         );
-    }
-
-    #[test]
-    fn the_published_sweep_has_238_cases() {
-        let cases = ElasticScene::published(Preset::Draft)
-            .cases(&topo_knots::KnotTable::builtin())
-            .unwrap();
-        assert_eq!(cases.len(), 238);
-        assert_eq!(cases[8].name(), "3_1_twist+0.00_shrunk_n200");
     }
 
     #[test]

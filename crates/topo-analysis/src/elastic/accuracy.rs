@@ -6,11 +6,11 @@ use topo_core::{CpuClock, GAMMA_L_STABLE_SMALL, Interrupt};
 use topo_knots::KnotTable;
 use topo_rod::{Accuracy, CutSite};
 
+use super::case::{ELASTIC, charge};
+use super::scene::{ElasticCase, ElasticScene};
 use crate::AnalysisError;
-use crate::case::{ELASTIC, charge};
 use crate::knots::Shapes;
-use crate::scene::{ElasticCase, ElasticScene};
-use crate::sweep::Event;
+use crate::progress::Event;
 use crate::times::{DischargeTimes, ELASTIC_SHARES};
 
 /// Knots and twists on which accuracy is measured: every knot of the published sweep untwisted, and twenty others spread over

@@ -1,59 +1,17 @@
 //! A scene's cases, in parallel, resumable, into one table.
 
-use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
-use topo_core::Interrupt;
 use topo_knots::KnotTable;
 
+use super::case::{self, CaseJob, fingerprint};
+use super::scene::ElasticScene;
 use crate::AnalysisError;
-use crate::case::{self, fingerprint, finished};
+use crate::folder::{finished, writable};
 use crate::knots::{Shapes, tight_shapes};
-use crate::scene::ElasticScene;
+use crate::progress::{Event, SweepSettings, with_jobs};
 use crate::table::{SweepRow, write_table};
-
-/// What a sweep tells while it runs; calls come from any of its threads.
-#[derive(Debug, Clone, Copy)]
-#[non_exhaustive]
-pub enum Event<'a> {
-    /// The sweep begins.
-    Begin {
-        /// Cases of the scene.
-        n_cases: usize,
-        /// Those finished by an earlier run.
-        n_reused: usize,
-    },
-    /// The start shape of a knot is ready.
-    Knot {
-        /// Its name.
-        name: &'a str,
-        /// Its ropelength.
-        length_over_radius: f64,
-    },
-    /// A case is finished.
-    Case {
-        /// Its name.
-        name: &'a str,
-        /// Cases finished so far, those of earlier runs included.
-        n_done: usize,
-        /// Its warnings; empty if there are none.
-        warnings: &'a str,
-    },
-}
-
-/// Where and how a sweep runs.
-#[derive(Debug, Clone)]
-pub struct SweepSettings {
-    /// Output folder; tables go to `elastic/` below it.
-    pub out: PathBuf,
-    /// Cases at a time; 0: one a core.
-    pub jobs: usize,
-    /// Compute again what is finished.
-    pub fresh: bool,
-    /// Asks the sweep to stop; finished cases are kept.
-    pub interrupt: Interrupt,
-}
 
 /// What a sweep leaves behind.
 #[derive(Debug, Clone)]
@@ -68,46 +26,6 @@ pub struct SweepReport {
     pub interrupted: bool,
     /// Tight shapes it started from.
     pub shapes: Shapes,
-}
-
-/// Runs `work` on a pool of `jobs` threads (0: one a core).
-///
-/// # Errors
-/// Threads that cannot be started.
-pub fn with_jobs<R: Send>(
-    jobs: usize,
-    work: impl FnOnce() -> R + Send,
-) -> Result<R, AnalysisError> {
-    let failed = |e: rayon::ThreadPoolBuildError| AnalysisError::Jobs {
-        jobs,
-        reason: e.to_string(),
-    };
-    Ok(rayon::ThreadPoolBuilder::new()
-        .num_threads(jobs)
-        .build()
-        .map_err(failed)?
-        .install(work))
-}
-
-/// Makes a folder and those above it.
-pub(crate) fn make_folder(folder: &Path) -> Result<(), AnalysisError> {
-    std::fs::create_dir_all(folder).map_err(|source| AnalysisError::Output {
-        path: folder.to_owned(),
-        source,
-    })
-}
-
-/// Makes sure that a folder can be written to.
-///
-/// # Errors
-/// The folder and what to do.
-pub fn writable(folder: &Path) -> Result<(), AnalysisError> {
-    let wrong = |source| AnalysisError::Output {
-        path: folder.to_owned(),
-        source,
-    };
-    make_folder(folder)?;
-    tempfile::tempfile_in(folder).map(drop).map_err(wrong)
 }
 
 /// Runs all cases of a scene; what an earlier run finished with the same settings is kept.
@@ -172,14 +90,13 @@ pub fn run_sweep(
                 let Some(tight) = shapes.get(&case.knot) else {
                     return Ok(None);
                 };
-                let rows = case::run(
+                let job = CaseJob {
                     scene,
                     case,
                     tight,
                     table,
-                    &folder.join(case.name()),
-                    &settings.interrupt,
-                )?;
+                };
+                let rows = case::run(&job, &folder.join(case.name()), &settings.interrupt)?;
                 if let Some(rows) = &rows {
                     let n_done = n_done.fetch_add(1, Ordering::Relaxed) + 1;
                     let warnings: Vec<&str> = rows
@@ -218,6 +135,10 @@ pub fn run_sweep(
 
 #[cfg(test)]
 mod tests {
+    use std::path::Path;
+
+    use topo_core::Interrupt;
+
     use super::*;
 
     const SCENE: &str = "[rod]\nknot = \"3_1\"\ntwist = [0.0, 1.0]\n[rod.contact]\n[rod.friction]\n[charge]\nduration = 0.05\n[discharge]\nuntil_released = 0.3\nclosures = 4\n[accuracy]\nedges = 60\ntolerance = 1e-2\n";

@@ -1,0 +1,19 @@
+//! Elastic scenes: knots, charged, cut and followed; their tables and what these say.
+
+mod accuracy;
+mod case;
+mod choices;
+mod file;
+mod imperfection;
+mod record;
+mod resonance;
+mod scene;
+mod sweep;
+
+pub use accuracy::{ACCURACY_CASES, AccuracyRow, measure_accuracy, reference_scene};
+pub use case::RESULTS_VERSION;
+pub use choices::{Cuts, NEAR_TIE, Names, Numbers, Preset};
+pub use imperfection::perturbed;
+pub use resonance::{Ensemble, Regime, Resonance, crossover, ensembles, regime, resonances};
+pub use scene::{ElasticCase, ElasticScene};
+pub use sweep::{SweepReport, run_sweep};

@@ -1,0 +1,276 @@
+//! One case: charge a knot, cut it where the scene says, follow each discharge, and write a folder.
+
+use std::path::Path;
+
+use serde_json::json;
+use topo_core::{CpuClock, Interrupt, StopReason};
+use topo_knots::{KnotEntry, KnotTable, TightKnot, identify};
+use topo_rod::{ChargedRod, CutSite, Discharge, Guards, PhaseReport, RodBattery};
+
+use super::choices::{Cuts, NEAR_TIE};
+use super::imperfection::perturbed;
+use super::record::{MadeCase, write_case};
+use super::scene::{ElasticCase, ElasticScene};
+use crate::AnalysisError;
+use crate::folder::identity;
+use crate::table::SweepRow;
+use crate::timeline::Timeline;
+use crate::times::{DischargeTimes, ELASTIC_SHARES};
+
+/// Changes whenever the same scene gives other numbers than before; finished cases of another version are computed again.
+pub const RESULTS_VERSION: u32 = 1;
+
+/// Elastic parts of the energy, without contact.
+pub(crate) const ELASTIC: [&str; 3] = ["bend", "twist", "stretch"];
+
+/// Identity of a case: everything that its numbers depend on.
+pub(crate) fn fingerprint(scene: &ElasticScene, case: &ElasticCase, entry: &KnotEntry) -> String {
+    let all = json!({
+        "version": RESULTS_VERSION, "case": case, "knot": entry, "tighten": scene.tighten, "imperfection": scene.imperfection,
+        "seed": scene.seed, "charge": scene.charge, "cuts": scene.cuts, "discharge": scene.discharge,
+        "timeline": scene.timeline, "accuracy": scene.accuracy, "guards": Guards::default(),
+    });
+    identity(&all)
+}
+
+/// Twists and relaxes the knot of a case.
+pub(crate) fn charge(
+    scene: &ElasticScene,
+    case: &ElasticCase,
+    tight: &TightKnot,
+    interrupt: &Interrupt,
+) -> Result<ChargedRod, AnalysisError> {
+    let refuse = |source| AnalysisError::Rod {
+        case: case.name(),
+        source,
+    };
+    let start = tight.centreline(case.rod.n_edges)?;
+    let tube = case.rod.tube(start.ropelength).map_err(refuse)?;
+    let size = scene.imperfection * start.curve.length() / tube.start_length;
+    let curve = perturbed(&start.curve, size, scene.seed).map_err(|e| refuse(e.into()))?;
+    RodBattery::new(
+        &case.rod,
+        &scene.accuracy,
+        Guards::default(),
+        &curve,
+        start.ropelength,
+    )
+    .and_then(|battery| battery.charge(&scene.charge, interrupt))
+    .map_err(refuse)
+}
+
+/// A case with what it starts from.
+#[derive(Clone, Copy)]
+pub(crate) struct CaseJob<'a> {
+    pub scene: &'a ElasticScene,
+    pub case: &'a ElasticCase,
+    pub tight: &'a TightKnot,
+    pub table: &'a KnotTable,
+}
+
+/// One cut of a charged rod, followed to its end.
+pub(super) struct FollowedCut {
+    pub discharge: Discharge,
+    pub times: DischargeTimes,
+    pub timeline: Timeline,
+    pub row: SweepRow,
+}
+
+/// Runs a case and writes its folder; `None` when interrupted, and then nothing is written.
+pub(crate) fn run(
+    job: &CaseJob<'_>,
+    folder: &Path,
+    interrupt: &Interrupt,
+) -> Result<Option<Vec<SweepRow>>, AnalysisError> {
+    let CaseJob {
+        scene,
+        case,
+        tight,
+        table,
+    } = *job;
+    let refuse = |source| AnalysisError::Rod {
+        case: case.name(),
+        source,
+    };
+    let clock = CpuClock::start();
+    let charged = charge(scene, case, tight, interrupt)?;
+    let charge_seconds = clock.seconds();
+    if interrupt.is_requested() {
+        return Ok(None);
+    }
+    let sites: Vec<f64> = match scene.cuts {
+        Cuts::Argmax => vec![charged.cut_candidates(0.0)[0].at],
+        Cuts::NearTies => charged
+            .cut_candidates(NEAR_TIE)
+            .iter()
+            .map(|c| c.at)
+            .collect(),
+        Cuts::All(k) => (0..k).map(|i| i as f64 / k as f64).collect(),
+    };
+    let mut base = charged_row(case, &charged, table);
+    let mut runs = Vec::new();
+    if charged.record().report.stop.is_success() {
+        for &at in &sites {
+            let clock = CpuClock::start();
+            let discharge = charged
+                .cut(CutSite::At(at))
+                .and_then(|c| c.discharge(&scene.discharge, interrupt))
+                .map_err(refuse)?;
+            if interrupt.is_requested() {
+                return Ok(None);
+            }
+            let curves: Vec<_> = discharge
+                .record
+                .samples
+                .iter()
+                .map(|s| (s.time, s.state.vertices()))
+                .collect();
+            let timeline = Timeline::of(&curves, table, scene.timeline, scene.seed)?;
+            let times = DischargeTimes::of(
+                &discharge.record.curve,
+                &ELASTIC,
+                discharge.start,
+                &ELASTIC_SHARES,
+            );
+            let row = discharge_row(
+                &base,
+                &discharge,
+                &times,
+                &timeline,
+                clock.seconds() + charge_seconds / sites.len() as f64,
+            );
+            runs.push(FollowedCut {
+                discharge,
+                times,
+                timeline,
+                row,
+            });
+        }
+    } else {
+        base.cpu_seconds = charge_seconds;
+    }
+    let rows: Vec<SweepRow> = if runs.is_empty() {
+        vec![base]
+    } else {
+        runs.iter().map(|r| r.row.clone()).collect()
+    };
+    let made = MadeCase {
+        job,
+        charged: &charged,
+        runs: &runs,
+        rows: &rows,
+        charge_seconds,
+    };
+    let written = write_case(&made, folder);
+    if let Err(error) = written {
+        // a folder without its run.json is of no use to anybody; what matters is the first error
+        if let Err(left) = std::fs::remove_dir_all(folder) {
+            tracing::debug!(folder = %folder.display(), %left, "an incomplete case stays behind");
+        }
+        return Err(error);
+    }
+    Ok(Some(rows))
+}
+
+fn push_warning(warnings: &mut String, text: &str) {
+    if !warnings.is_empty() {
+        warnings.push(';');
+    }
+    // `;` separates warnings
+    warnings.push_str(&text.replace(';', ","));
+}
+
+fn phase_warnings(phase: &str, report: &PhaseReport, warnings: &mut String) {
+    if !report.stop.is_success() {
+        push_warning(warnings, &format!("{phase} stopped: {}", report.stop));
+    }
+    if report.ledger_residual > 0.01 {
+        push_warning(
+            warnings,
+            &format!(
+                "{phase}: energy account open by {:.1} %",
+                100.0 * report.ledger_residual
+            ),
+        );
+    }
+    if report.min_distance_over_contact.is_some_and(|d| d < 0.75) {
+        push_warning(warnings, &format!("{phase}: strands overlap deeply"));
+    }
+}
+
+/// The part of a row that all cuts share.
+fn charged_row(case: &ElasticCase, charged: &ChargedRod, table: &KnotTable) -> SweepRow {
+    let record = charged.record();
+    let report = &record.report;
+    let mut row = SweepRow {
+        knot: case.knot.clone(),
+        twist: case.rod.twist.unwrap_or(0.0),
+        reading: case.rod.reading.name().to_owned(),
+        edges: case.rod.n_edges,
+        link_drift: report.link_drift,
+        min_distance_over_contact: report.min_distance_over_contact,
+        steps: report.n_steps,
+        rejected: report.rejections.total(),
+        ..SweepRow::default()
+    };
+    if let Some(last) = record.samples.last() {
+        row.energy = last.elastic();
+        [row.bend, row.twist_energy, row.stretch, _] = last.stored;
+        (row.writhe, row.total_twist) = (last.writhe, last.total_twist);
+    }
+    phase_warnings("charge", report, &mut row.warnings);
+    if case.rod.contact.is_none() {
+        push_warning(
+            &mut row.warnings,
+            "no contact: strands pass through each other",
+        );
+    }
+    match identify(charged.state().vertices(), table) {
+        Ok(kind) if kind.names.contains(&case.knot) => {}
+        Ok(kind) => push_warning(
+            &mut row.warnings,
+            &format!("the charged rod is tied as {}", kind.label()),
+        ),
+        Err(error) => push_warning(
+            &mut row.warnings,
+            &format!("the charged rod has no knot type: {error}"),
+        ),
+    }
+    row
+}
+
+fn discharge_row(
+    base: &SweepRow,
+    discharge: &Discharge,
+    times: &DischargeTimes,
+    timeline: &Timeline,
+    cpu_seconds: f64,
+) -> SweepRow {
+    let report = &discharge.record.report;
+    let at = |share| times.at(share).map(|t| t.value);
+    let mut row = SweepRow {
+        cut: discharge.at,
+        t50: at(0.5),
+        t90: at(0.9),
+        t95: at(0.95),
+        t99: at(0.99),
+        t_untie: timeline.untying_time(),
+        min_distance_over_contact: base
+            .min_distance_over_contact
+            .into_iter()
+            .chain(report.min_distance_over_contact)
+            .reduce(f64::min),
+        steps: base.steps + report.n_steps,
+        rejected: base.rejected + report.rejections.total(),
+        cpu_seconds,
+        ..base.clone()
+    };
+    if report.stop == StopReason::ReachedTime {
+        push_warning(
+            &mut row.warnings,
+            "discharge not finished in the longest time followed",
+        );
+    }
+    phase_warnings("discharge", report, &mut row.warnings);
+    row
+}

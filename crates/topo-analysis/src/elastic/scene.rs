@@ -1,0 +1,171 @@
+//! An elastic experiment and the cases it stands for.
+
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+use topo_knots::TightenSettings;
+use topo_rod::{
+    Accuracy, ChargeSettings, DischargeSettings, FrictionRange, Reading, RodParameters,
+};
+
+use super::choices::{Cuts, Numbers, Preset};
+use super::file::defaults;
+use crate::AnalysisError;
+use crate::timeline::TimelineSettings;
+
+/// An elastic experiment: which knots, how twisted, how cut, how accurately.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ElasticScene {
+    /// Folder of its tables below the output folder.
+    pub folder: String,
+    /// Knot names; "all" stands for the whole table.
+    pub knots: Vec<String>,
+    /// θ'h of the cases; empty: no twist is modelled.
+    pub twists: Vec<f64>,
+    /// Material, reading and resolution, its twist not yet set.
+    pub rod: RodParameters,
+    /// Size of the random perturbation of the start curve, in h: symmetric states that are unstable are left by it.
+    pub imperfection: f64,
+    /// Seed of that perturbation and of the closures.
+    pub seed: u64,
+    /// Relaxation of the closed rod.
+    pub charge: ChargeSettings,
+    /// Sites cut.
+    pub cuts: Cuts,
+    /// Discharge of the open rod.
+    pub discharge: DischargeSettings,
+    /// Knot types while open.
+    pub timeline: TimelineSettings,
+    /// Integrator and tolerance.
+    pub accuracy: Accuracy,
+    /// Preset that the numbers started from.
+    pub preset: Preset,
+    /// How the start shapes are tightened.
+    pub tighten: TightenSettings,
+}
+
+/// One charge with its cuts.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ElasticCase {
+    /// Knot type.
+    pub knot: String,
+    /// Material, twist, reading and resolution.
+    pub rod: RodParameters,
+}
+
+impl ElasticCase {
+    /// Folder name, unique within a scene.
+    pub fn name(&self) -> String {
+        let twist = self
+            .rod
+            .twist
+            .map_or("untwisted".to_owned(), |t| format!("twist{t:+.2}"));
+        format!(
+            "{}_{twist}_{}_n{}",
+            self.knot,
+            self.rod.reading.name(),
+            self.rod.n_edges
+        )
+    }
+}
+
+impl ElasticScene {
+    /// The published sweep: 14 knots at 17 twists.
+    pub fn published(preset: Preset) -> Self {
+        Self {
+            folder: "elastic".to_owned(),
+            knots: vec!["all".to_owned()],
+            twists: Numbers::Range {
+                from: -2.0,
+                to: 2.0,
+                n: 17,
+            }
+            .values(),
+            rod: RodParameters {
+                n_edges: preset.edges(),
+                ..RodParameters::default()
+            },
+            imperfection: defaults::imperfection(),
+            seed: defaults::seed(),
+            charge: ChargeSettings::default(),
+            cuts: preset.cuts(),
+            discharge: DischargeSettings::default(),
+            timeline: TimelineSettings::default(),
+            accuracy: Accuracy {
+                tolerance: preset.tolerance(),
+                ..Accuracy::default()
+            },
+            preset,
+            tighten: preset.tighten(),
+        }
+    }
+
+    /// The cases of the scene, knots in the order given, twists inside.
+    pub fn cases(&self, table: &topo_knots::KnotTable) -> Result<Vec<ElasticCase>, AnalysisError> {
+        let mut names = Vec::new();
+        for name in &self.knots {
+            if name == "all" {
+                names.extend(table.names().map(str::to_owned));
+            } else {
+                names.push(table.get(name)?.name.clone());
+            }
+        }
+        let twists: Vec<Option<f64>> = if self.twists.is_empty() {
+            vec![None]
+        } else {
+            self.twists.iter().copied().map(Some).collect()
+        };
+        let case = |knot: &String, twist| ElasticCase {
+            knot: knot.clone(),
+            rod: RodParameters {
+                twist,
+                ..self.rod.clone()
+            },
+        };
+        Ok(names
+            .iter()
+            .flat_map(|knot| twists.iter().map(move |t| case(knot, *t)))
+            .collect())
+    }
+
+    /// Where files with the scene's tables lie below an output folder.
+    pub fn results(&self, out: &Path) -> PathBuf {
+        out.join(&self.folder)
+    }
+
+    /// The untwisted cases under the two other choices that separate knot type from friction: friction range equal to the
+    /// contact diameter, and the reading `tight`. Their tables lie in folders of their own.
+    pub fn friction_variants(&self) -> [Self; 2] {
+        let untwisted = Self {
+            twists: vec![0.0],
+            ..self.clone()
+        };
+        let mut contact = Self {
+            folder: "elastic-contact-range".to_owned(),
+            ..untwisted.clone()
+        };
+        if let Some(friction) = &mut contact.rod.friction {
+            friction.range = FrictionRange::Contact;
+        }
+        let mut tight = Self {
+            folder: "elastic-tight".to_owned(),
+            ..untwisted
+        };
+        tight.rod.reading = Reading::Tight;
+        [contact, tight]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_published_sweep_has_238_cases() {
+        let cases = ElasticScene::published(Preset::Draft)
+            .cases(&topo_knots::KnotTable::builtin())
+            .unwrap();
+        assert_eq!(cases.len(), 238);
+        assert_eq!(cases[8].name(), "3_1_twist+0.00_shrunk_n200");
+    }
+}

@@ -1,0 +1,240 @@
+//! What the model books: energy by term, dissipation by channel, work of the ends, and its own work by component.
+
+use nalgebra::Vector3;
+use topo_core::{Ledger, Rejection};
+
+use super::{CHANNELS, RodModel};
+use crate::RodState;
+use crate::energy::Force;
+use crate::friction::friction_form;
+use crate::newton::NewtonTwist;
+use crate::viscosity::{TwistViscosity, centreline_form, twist_form};
+
+/// What a run has worked, by component; a component that the scene leaves out stays at zero.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub struct WorkAccount {
+    /// Evaluations of energy and force.
+    pub n_evaluations: u64,
+    /// Builds of the contact list.
+    pub n_list_rebuilds: u64,
+    /// Factorisations of the centreline mobility.
+    pub n_mobility_factorisations: u64,
+    /// Factorisations of the twist mobility.
+    pub n_twist_factorisations: u64,
+    /// Factorisations of the Newton matrix.
+    pub n_newton_factorisations: u64,
+    /// Symbolic analyses of the Newton matrix.
+    pub n_newton_patterns: u64,
+    /// Bytes held by the contact list.
+    pub contact_bytes: usize,
+    /// Bytes held by matrices and factors of the centreline.
+    pub matrix_bytes: usize,
+}
+
+/// What the ledger needs of the state accepted last.
+#[derive(Default)]
+pub(super) struct Accepted {
+    pub(super) stamp: Option<u64>,
+    pub(super) total: f64,
+    pub(super) cosine: Vec<f64>,
+    pub(super) couplings: Vec<(u32, u32, f64)>,
+    pub(super) force: Force,
+    pub(super) rate: Vec<f64>,
+    pub(super) rate_stamp: Option<u64>,
+}
+
+impl RodModel {
+    /// Starts the account at `state` (a model is told once where its run starts).
+    ///
+    /// # Errors
+    /// A rod that folds back on itself has no energy.
+    pub fn start(&mut self, state: &RodState) -> Result<(), Rejection> {
+        self.evaluate(state)?;
+        self.remember(state);
+        self.ledger.set_stored(&self.at.energies);
+        Ok(())
+    }
+
+    /// Books the energy that a cut took before this run started: the account then starts at what the closed rod held.
+    pub(crate) fn record_cut(&mut self, closed: f64, removed: f64) {
+        let open = self.at.energies.clone();
+        let names: Vec<&'static str> = self.terms.iter().map(|t| t.name()).collect();
+        let mut ledger = Ledger::new(&names, &CHANNELS);
+        let mut before = open.clone();
+        if let Some(first) = before.first_mut() {
+            *first += closed - open.iter().sum::<f64>();
+        }
+        ledger.set_stored(&before);
+        ledger.record_event("cut", 0.0, removed);
+        ledger.set_stored(&open);
+        self.ledger = ledger;
+    }
+
+    /// Energy books of the run.
+    pub fn account(&self) -> &Ledger {
+        &self.ledger
+    }
+
+    /// What was worked so far, by component.
+    pub fn work(&self) -> WorkAccount {
+        let mobility = self
+            .rotation
+            .as_ref()
+            .map_or(0, TwistViscosity::n_factorisations);
+        let newton = self
+            .newton_twist
+            .as_ref()
+            .map_or(0, NewtonTwist::n_factorisations);
+        WorkAccount {
+            n_evaluations: self.n_evaluations,
+            n_list_rebuilds: self.pairs.n_rebuilds(),
+            n_mobility_factorisations: self.centreline.n_factorisations(),
+            n_twist_factorisations: mobility + newton,
+            n_newton_factorisations: self.newton.n_factorisations,
+            n_newton_patterns: self.newton.n_patterns,
+            contact_bytes: self.pairs.n_bytes(),
+            matrix_bytes: 8 * (self.centreline.n_nonzeros() + self.newton.n_nonzeros()),
+        }
+    }
+
+    /// Keeps of the evaluated state what the next step's account needs.
+    pub(super) fn remember(&mut self, state: &RodState) {
+        let a = &mut self.accepted;
+        a.stamp = Some(state.stamp());
+        a.total = self.at.energies.iter().sum();
+        a.cosine.clone_from(&self.at.geometry.cosine);
+        a.couplings.clone_from(&self.at.couplings);
+        if self.ends.is_driven() {
+            a.force.clone_from(&self.at.force);
+        }
+    }
+
+    /// Work of loads and of prescribed motions over a step, with the mean of the forces at its two ends.
+    pub(super) fn external_work(&self, from: &RodState, step: &[f64], dt: f64) -> f64 {
+        if !self.ends.is_driven() {
+            return 0.0;
+        }
+        let n = self.n_vertices;
+        let moved = |i: usize| Vector3::new(step[i], step[n + i], step[2 * n + i]);
+        let turned = |j: usize| {
+            if self.twist.is_some() {
+                step[3 * n + j]
+            } else {
+                0.0
+            }
+        };
+        let mut work = 0.0;
+        for (end, motion) in self.ends.motions.iter().enumerate() {
+            work += Vector3::from(motion.force).dot(&moved([0, n - 1][end]));
+            work += motion.torque * turned([0, self.n_edges - 1][end]);
+        }
+        // what a hold must supply: viscous resistance less the rod's own pull
+        for &(i, _) in &self.held_vertices {
+            let mut resistance = Vector3::zeros();
+            let viscous = 1.0 / (from.rest_length() * dt);
+            for j in [i.checked_sub(1), Some(i)]
+                .into_iter()
+                .flatten()
+                .filter(|&j| j < self.n_edges)
+            {
+                let other = if j == i { i + 1 } else { i - 1 };
+                resistance += (moved(i) - moved(other)) * viscous;
+            }
+            for (couplings, half) in [(&self.accepted.couplings, 0.5), (&self.at.couplings, 0.5)] {
+                for &(a, b, c) in couplings
+                    .iter()
+                    .filter(|c| c.0 as usize == i || c.1 as usize == i)
+                {
+                    let other = if a as usize == i { b } else { a } as usize;
+                    resistance += (moved(i) - moved(other)) * (half * c / dt);
+                }
+            }
+            let pull = (self.accepted.force.vertex[i] + self.at.force.vertex[i]) * 0.5;
+            work += (resistance - pull).dot(&moved(i));
+        }
+        for &(j, _) in &self.held_edges {
+            let half = 0.5 / (from.rest_length() * dt);
+            let mut resistance = 0.0;
+            for i in [j, j + 1]
+                .into_iter()
+                .filter(|i| from.interior().contains(i))
+            {
+                let other = if i == j { j - 1 } else { j + 1 };
+                let cosine = 0.5 * (self.accepted.cosine[i] + self.at.geometry.cosine[i]);
+                resistance += half * (turned(j) - cosine * turned(other));
+            }
+            work += (resistance - 0.5 * (self.accepted.force.torque[j] + self.at.force.torque[j]))
+                * turned(j);
+        }
+        work
+    }
+
+    /// Energy that viscosity and friction take over a step.
+    ///
+    /// With the secant velocity alone, D = δ·M δ/dt, a mode that decays as e^(−λt) is booked short by (λ dt)²/12. The change of
+    /// the rate over the step, a, tells λ dt = z by z² = a·M a dt²/δ·M δ, and D grows by the exact factor (z/2) coth(z/2).
+    pub(super) fn dissipate(&mut self, from: &RodState, to: &RodState, step: &[f64], dt: f64) {
+        let n = self.n_vertices;
+        let mut rate = std::mem::take(&mut self.rate_there);
+        rate.resize(step.len(), 0.0);
+        let solved = self.solve_rate(to, &mut rate).is_ok();
+        let known = solved && self.accepted.rate_stamp == Some(from.stamp());
+        self.rate_change.clear();
+        self.rate_change.extend(
+            rate.iter()
+                .zip(&self.accepted.rate)
+                .map(|(new, old)| (new - old) * dt),
+        );
+        let change = |slow: f64, fast: f64| {
+            if known && slow > 0.0 {
+                relaxation_factor((fast / slow).sqrt())
+            } else {
+                1.0
+            }
+        };
+        let chain = from.chain();
+        let centreline = |v: &[f64]| {
+            let rubbed = friction_form(&self.accepted.couplings, v, n)
+                + friction_form(&self.at.couplings, v, n);
+            (centreline_form(chain, v), 0.5 * rubbed)
+        };
+        let (slow, fast) = (
+            centreline(step),
+            if known {
+                centreline(&self.rate_change)
+            } else {
+                (0.0, 0.0)
+            },
+        );
+        let factor = change(slow.0 + slow.1, fast.0 + fast.1) / dt;
+        let (old, new) = (&self.accepted.cosine, &self.at.geometry.cosine);
+        let twist = |w: &[f64]| twist_form(chain, |i| 0.5 * (old[i] + new[i]), w);
+        let twisted = self.twist.map(|_| {
+            let slow = twist(&step[3 * n..]);
+            slow * change(
+                slow,
+                if known {
+                    twist(&self.rate_change[3 * n..])
+                } else {
+                    0.0
+                },
+            ) / dt
+        });
+        self.ledger.dissipate(0, slow.0 * factor);
+        self.ledger.dissipate(2, slow.1 * factor);
+        if let Some(energy) = twisted {
+            self.ledger.dissipate(1, energy);
+        }
+        self.rate_there = std::mem::replace(&mut self.accepted.rate, rate);
+        self.accepted.rate_stamp = solved.then(|| to.stamp());
+    }
+}
+
+/// (z/2) coth(z/2): mean square of a velocity that decays by e^(−z) over a step, over the square of its mean.
+fn relaxation_factor(z: f64) -> f64 {
+    if z < 1e-3 {
+        1.0 + z * z / 12.0
+    } else {
+        0.5 * z / (0.5 * z).tanh()
+    }
+}
