@@ -2,6 +2,17 @@
 //!
 //! Units are reduced: lengths in the nematic correlation length xi_N, energies in L xi_N, times in tau_N.
 
+mod error;
 mod grid;
+mod material;
+mod particle;
+mod tensor;
 
+pub use error::NematicError;
 pub use grid::{Faces, Grid, GridError};
+pub use material::Material;
+pub use particle::Particle;
+pub use tensor::{
+    N_COMPONENTS, Tensor5, contract, largest_eigenvalue, matrix, order_and_director,
+    square_traceless, uniaxial,
+};

@@ -1,0 +1,111 @@
+//! What can be wrong with a nematic battery before a run starts.
+
+use thiserror::Error;
+use topo_core::{FileError, InvalidValue};
+
+use crate::GridError;
+
+/// A nematic, its grid, its particle or its protocol cannot be had as asked.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum NematicError {
+    /// A number is out of its range.
+    #[error(transparent)]
+    Value(#[from] InvalidValue),
+    /// The grid cannot be.
+    #[error(transparent)]
+    Grid(#[from] GridError),
+    /// There is no positive order at which the bulk energy is stationary.
+    #[error(
+        "A = {a}, B = {b}, C = {c} have no nematic phase (B^2 < 24 A C, or no positive order): change them, or give the surface order"
+    )]
+    NoNematicPhase {
+        /// A.
+        a: f64,
+        /// B.
+        b: f64,
+        /// C.
+        c: f64,
+    },
+    /// The particle leaves no room to a wall or to its image.
+    #[error(
+        "a particle of radius {radius} leaves a gap of {gap} along axis {axis}, whose cell is {extent} long: use a smaller particle or a larger cell (two spacings at least)"
+    )]
+    ParticleTooLarge {
+        /// 0, 1, 2 for x, y, z.
+        axis: usize,
+        /// Its radius.
+        radius: f64,
+        /// Length of the box along the axis.
+        extent: f64,
+        /// What is left.
+        gap: f64,
+    },
+    /// The particle is smaller than the grid can show.
+    #[error(
+        "a particle of radius {radius} is not resolved by a spacing of {spacing}: the radius must be at least two spacings"
+    )]
+    ParticleTooCoarse {
+        /// Its radius.
+        radius: f64,
+        /// The spacing.
+        spacing: f64,
+    },
+    /// The spacing does not resolve the core of a defect.
+    #[error(
+        "a spacing of {spacing} is too coarse for defect cores of size {correlation_length}: use at most {limit}"
+    )]
+    SpacingTooCoarse {
+        /// The spacing.
+        spacing: f64,
+        /// Correlation length of the material.
+        correlation_length: f64,
+        /// The largest spacing accepted.
+        limit: f64,
+    },
+    /// The run would need more memory than allowed.
+    #[error(
+        "a grid of {cells:?} cells needs about {needed} bytes, but only {limit} are allowed: use a larger spacing, single precision or a higher limit"
+    )]
+    TooMuchMemory {
+        /// Cells along each axis.
+        cells: [usize; 3],
+        /// Estimate for the run.
+        needed: u64,
+        /// What is allowed.
+        limit: u64,
+    },
+    /// Tables or fields of the wrong length.
+    #[error("{what} has {found} entries instead of {expected}")]
+    Length {
+        /// Which one.
+        what: &'static str,
+        /// How many entries it has.
+        found: usize,
+        /// How many it should have.
+        expected: usize,
+    },
+    /// The operation needs a particle, and there is none.
+    #[error("{operation} needs a particle: give one, or leave it out")]
+    NoParticle {
+        /// What was asked.
+        operation: &'static str,
+    },
+    /// A field holds NaN or infinity.
+    #[error("{what} is not finite at cell {cell}: check the input")]
+    NotFinite {
+        /// Which field.
+        what: &'static str,
+        /// Index of the cell.
+        cell: usize,
+    },
+    /// A checkpoint could not be written or read.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// A checkpoint belongs to another case.
+    #[error("the checkpoint {path} belongs to another case: remove it or use another folder")]
+    ForeignCheckpoint {
+        /// The file.
+        path: String,
+    },
+}
