@@ -6,7 +6,7 @@ use topo_core::{CpuClock, GAMMA_L_STABLE_SMALL, Interrupt};
 use topo_knots::KnotTable;
 use topo_rod::{Accuracy, CutSite};
 
-use super::case::{ELASTIC, charge};
+use super::case::{CaseJob, ELASTIC, charge};
 use super::scene::{ElasticCase, ElasticScene};
 use crate::AnalysisError;
 use crate::knots::Shapes;
@@ -127,7 +127,13 @@ pub fn measure_accuracy(
                     case: case.name(),
                     source,
                 };
-                let charged = charge(scene, &case, tight, interrupt)?;
+                let job = CaseJob {
+                    scene,
+                    case: &case,
+                    tight,
+                    table,
+                };
+                let charged = charge(&job, interrupt)?;
                 let energy = charged
                     .record()
                     .samples

@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use serde_json::json;
-use topo_core::{CpuClock, Interrupt, StopReason};
-use topo_knots::{KnotEntry, KnotTable, TightKnot, identify};
+use topo_core::{CpuClock, Interrupt, Polyline, StopReason};
+use topo_knots::{Chirality, KnotEntry, KnotTable, TightKnot, identify};
 use topo_rod::{ChargedRod, CutSite, Discharge, Guards, PhaseReport, RodBattery};
 
 use super::choices::{Cuts, NEAR_TIE};
@@ -25,21 +25,40 @@ pub(crate) const ELASTIC: [&str; 3] = ["bend", "twist", "stretch"];
 
 /// Identity of a case: everything that its numbers depend on.
 pub(crate) fn fingerprint(scene: &ElasticScene, case: &ElasticCase, entry: &KnotEntry) -> String {
-    let all = json!({
+    let mut all = json!({
         "version": RESULTS_VERSION, "case": case, "knot": entry, "tighten": scene.tighten, "imperfection": scene.imperfection,
         "seed": scene.seed, "charge": scene.charge, "cuts": scene.cuts, "discharge": scene.discharge,
         "timeline": scene.timeline, "accuracy": scene.accuracy, "guards": Guards::default(),
     });
+    if starts_from_two_images(case, entry) {
+        all["images"] = 2.into();
+    }
     identity(&all)
 }
 
+/// Whether a twisted rod may start from the tight curve or from its mirror image, being the same knot.
+fn starts_from_two_images(case: &ElasticCase, entry: &KnotEntry) -> bool {
+    entry.chirality == Chirality::Amphichiral && case.rod.twist.is_some_and(|twist| twist != 0.0)
+}
+
 /// Twists and relaxes the knot of a case.
+///
+/// The tight curve of an amphichiral knot need not be its own mirror image, as that of 6_3, and a rod so tightly tied stays
+/// in the one of the two minima that it starts from. The image that stores less under the twist of the case is taken, so
+/// that the energy of such a knot does not depend on the sign of the twist.
+///
+/// # Validation
+/// `amphichiral_knots_store_the_same_under_either_twist`.
 pub(crate) fn charge(
-    scene: &ElasticScene,
-    case: &ElasticCase,
-    tight: &TightKnot,
+    job: &CaseJob<'_>,
     interrupt: &Interrupt,
 ) -> Result<ChargedRod, AnalysisError> {
+    let CaseJob {
+        scene,
+        case,
+        tight,
+        table,
+    } = *job;
     let refuse = |source| AnalysisError::Rod {
         case: case.name(),
         source,
@@ -48,15 +67,33 @@ pub(crate) fn charge(
     let tube = case.rod.tube(start.ropelength).map_err(refuse)?;
     let size = scene.imperfection * start.curve.length() / tube.start_length;
     let curve = perturbed(&start.curve, size, scene.seed).map_err(|e| refuse(e.into()))?;
-    RodBattery::new(
-        &case.rod,
-        &scene.accuracy,
-        Guards::default(),
-        &curve,
-        start.ropelength,
-    )
-    .and_then(|battery| battery.charge(&scene.charge, interrupt))
-    .map_err(refuse)
+    let from = |curve: &Polyline| {
+        RodBattery::new(
+            &case.rod,
+            &scene.accuracy,
+            Guards::default(),
+            curve,
+            start.ropelength,
+        )
+        .and_then(|battery| battery.charge(&scene.charge, interrupt))
+        .map_err(refuse)
+    };
+    let charged = from(&curve)?;
+    if !starts_from_two_images(case, table.get(&case.knot)?) {
+        return Ok(charged);
+    }
+    let flipped = curve.vertices().iter().map(|x| [x.x, x.y, -x.z].into());
+    let image = from(&Polyline::new(flipped.collect(), true).map_err(|e| refuse(e.into()))?)?;
+    let stored = |rod: &ChargedRod| {
+        let last = rod.record().samples.last();
+        let energy = last.map_or(f64::INFINITY, |s| s.elastic());
+        (!rod.record().report.stop.is_success(), energy)
+    };
+    Ok(if stored(&image) < stored(&charged) {
+        image
+    } else {
+        charged
+    })
 }
 
 /// A case with what it starts from.
@@ -83,17 +120,14 @@ pub(crate) fn run(
     interrupt: &Interrupt,
 ) -> Result<Option<Vec<SweepRow>>, AnalysisError> {
     let CaseJob {
-        scene,
-        case,
-        tight,
-        table,
+        scene, case, table, ..
     } = *job;
     let refuse = |source| AnalysisError::Rod {
         case: case.name(),
         source,
     };
     let clock = CpuClock::start();
-    let charged = charge(scene, case, tight, interrupt)?;
+    let charged = charge(job, interrupt)?;
     let charge_seconds = clock.seconds();
     if interrupt.is_requested() {
         return Ok(None);
@@ -273,4 +307,63 @@ fn discharge_row(
     }
     phase_warnings("discharge", report, &mut row.warnings);
     row
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Preset;
+    use topo_knots::{TightenSettings, tighten_entry};
+
+    #[test]
+    fn amphichiral_knots_store_the_same_under_either_twist() {
+        let table = KnotTable::builtin();
+        let entry = table.get("6_3").unwrap();
+        let quick = TightenSettings {
+            n_variants: 0,
+            n_kicks: 0,
+            ..TightenSettings::draft()
+        };
+        let tight = tighten_entry(entry, &quick).unwrap();
+        let mut scene = ElasticScene::published(Preset::Draft);
+        scene.rod.n_edges = 80;
+        let energy = |twist: f64| {
+            let mut case = ElasticCase {
+                knot: "6_3".to_owned(),
+                rod: scene.rod.clone(),
+            };
+            case.rod.twist = Some(twist);
+            let job = CaseJob {
+                scene: &scene,
+                case: &case,
+                tight: &tight,
+                table: &table,
+            };
+            let charged = charge(&job, &Interrupt::new()).unwrap();
+            charged.record().samples.last().unwrap().elastic()
+        };
+        let (plus, minus) = (energy(0.5), energy(-0.5));
+        assert!((plus / minus - 1.0).abs() < 1e-9, "{plus} {minus}");
+    }
+
+    #[test]
+    fn identities_of_chiral_and_untwisted_cases_know_of_one_image() {
+        let table = KnotTable::builtin();
+        let case = |knot: &str, twist| ElasticCase {
+            knot: knot.to_owned(),
+            rod: topo_rod::RodParameters {
+                twist,
+                ..Default::default()
+            },
+        };
+        for (knot, twist, two) in [
+            ("6_3", Some(0.5), true),
+            ("6_3", Some(0.0), false),
+            ("6_3", None, false),
+            ("6_2", Some(0.5), false),
+        ] {
+            let entry = table.get(knot).unwrap();
+            assert_eq!(starts_from_two_images(&case(knot, twist), entry), two);
+        }
+    }
 }
