@@ -2,10 +2,12 @@
 
 mod curves;
 mod file;
+mod nematic;
 
 use crate::error::XtaskError;
 pub use curves::{Curve, Moment, Snapshot, series, snapshots};
 pub use file::{read_csv, write};
+pub use nematic::{DefectLine, NematicSweep, Slice};
 use std::path::Path;
 pub use topo_analysis::{KnotRow, SweepRow as Cut};
 

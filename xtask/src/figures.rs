@@ -4,6 +4,7 @@ mod elastic_charging;
 mod elastic_configurations;
 mod elastic_discharge;
 mod knots_table;
+mod nematic;
 mod series;
 #[cfg(test)]
 mod tests;
@@ -77,10 +78,12 @@ pub struct Figure {
 }
 
 /// Every figure, in the order of the gallery.
-pub const ALL: [Figure; 4] = [
+pub const ALL: [Figure; 6] = [
     elastic_configurations::FIGURE,
     elastic_charging::FIGURE,
     elastic_discharge::FIGURE,
+    nematic::charging::FIGURE,
+    nematic::discharge::FIGURE,
     knots_table::FIGURE,
 ];
 

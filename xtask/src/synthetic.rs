@@ -1,5 +1,9 @@
 //! Made-up results in the layout of real ones, for the tests of drawing only.
 
+mod nematic;
+
+pub use nematic::nematic;
+
 use crate::data::{Cut, KNOTS, KnotRow, write};
 use nalgebra::Vector3;
 use std::f64::consts::TAU;

@@ -9,6 +9,7 @@ mod elastic;
 mod error;
 mod folder;
 mod knots;
+mod nematic;
 mod progress;
 mod statistics;
 mod table;
@@ -23,6 +24,10 @@ pub use elastic::{
 pub use error::AnalysisError;
 pub use folder::writable;
 pub use knots::{Shapes, knots_folder, tight_shapes, write_knots};
+pub use nematic::{
+    LinePoint, NematicResonance, NematicRow, NematicSample, SlicePoint, buckling,
+    nematic_resonance, resonance_peak,
+};
 pub use progress::{Event, SweepSettings, with_jobs};
 pub use statistics::{Spread, median, quantile};
 pub use table::{KnotRow, SweepRow, read_table, write_table};

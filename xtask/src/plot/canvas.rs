@@ -4,6 +4,7 @@ use super::color::{INK, QUIET, Scale};
 use super::font;
 use super::raster::{self, Window};
 use super::render;
+use super::solids::Solids;
 use super::style::{Anchor, Style};
 use super::text;
 use super::tube::Tube;
@@ -132,6 +133,25 @@ impl Canvas {
         Ok(())
     }
 
+    /// Solids centred on `center` (view coordinates) in the box at `at` of `size`, at `scale` units of the canvas per unit of
+    /// length.
+    pub fn solids(
+        &mut self,
+        at: [f64; 2],
+        size: [f64; 2],
+        center: [f64; 2],
+        scale: f64,
+        solids: &Solids<'_>,
+    ) -> Result<(), XtaskError> {
+        let window = window(size, center, scale, self.zoom);
+        let pixmap = solids.draw(&window).ok_or_else(|| XtaskError::Drawing {
+            reason: "solids without pixels".to_owned(),
+        })?;
+        let image = render::png(&pixmap)?;
+        self.image(at, size, &image);
+        Ok(())
+    }
+
     /// PNG bytes in the box at `at` of `size`.
     pub fn image(&mut self, at: [f64; 2], size: [f64; 2], png: &[u8]) {
         self.raw(&format!(
@@ -229,17 +249,22 @@ pub fn tube_png(
     zoom: f64,
     tube: &Tube,
 ) -> Result<Vec<u8>, XtaskError> {
+    let pixmap = raster::draw(tube, &window(size, center, scale, zoom)).ok_or_else(|| {
+        XtaskError::Drawing {
+            reason: "tube without pixels".to_owned(),
+        }
+    })?;
+    render::png(&pixmap)
+}
+
+fn window(size: [f64; 2], center: [f64; 2], scale: f64, zoom: f64) -> Window {
     let side = |s: f64| (s * zoom).round().clamp(1.0, 8000.0) as u32;
-    let window = Window {
+    Window {
         width: side(size[0]),
         height: side(size[1]),
         center,
         scale: scale * zoom,
-    };
-    let pixmap = raster::draw(tube, &window).ok_or_else(|| XtaskError::Drawing {
-        reason: "tube without pixels".to_owned(),
-    })?;
-    render::png(&pixmap)
+    }
 }
 
 /// Preview of a PNG, at half its size.

@@ -47,6 +47,31 @@ impl Scale {
         }
     }
 
+    /// Blue over white to vermilion from `-max` to `max`, even in linear light.
+    pub fn diverging(max: f64) -> Self {
+        let (low, high) = ([0, 90, 160], [200, 80, 0]);
+        let table = (0..256)
+            .map(|i| {
+                let t = i as f32 / 127.5 - 1.0;
+                mix([248; 3], if t < 0.0 { low } else { high }, t.abs())
+            })
+            .collect();
+        Self {
+            table,
+            ..Self::viridis(-max, max)
+        }
+    }
+
+    /// Blue to yellow from -1 to 1, even in linear light.
+    pub fn blue_to_yellow() -> Self {
+        let (low, high): (Rgb, Rgb) = ([30, 70, 170], [250, 220, 60]);
+        let table = (0..256).map(|i| mix(low, high, i as f32 / 255.0)).collect();
+        Self {
+            table,
+            ..Self::viridis(-1.0, 1.0)
+        }
+    }
+
     /// Viridis from 0 to `max` by the square root: small values keep their differences.
     pub fn viridis_root(max: f64) -> Self {
         Self {
@@ -98,6 +123,11 @@ pub fn css([r, g, b]: Rgb) -> String {
     format!("#{r:02x}{g:02x}{b:02x}")
 }
 
+/// Colour between two, even in linear light.
+fn mix(a: Rgb, b: Rgb, t: f32) -> Rgb {
+    std::array::from_fn(|k| from_linear(to_linear(a[k]) * (1.0 - t) + to_linear(b[k]) * t))
+}
+
 /// Linear light of an sRGB channel in [0, 255].
 pub fn to_linear(c: u8) -> f32 {
     let c = f32::from(c) / 255.0;
@@ -130,6 +160,16 @@ mod tests {
         assert!(luma(0.0) == luma(1.0) && luma(1.0) < luma(2.0) && luma(2.0) < luma(3.0));
         assert_eq!(scale.rgb(f64::NAN), scale.rgb(1.0));
         assert_eq!(scale.css(3.0).len(), 7);
+    }
+
+    #[test]
+    fn diverging_scale_is_white_in_the_middle() {
+        let scale = Scale::diverging(2.0);
+        assert!(scale.rgb(0.0).iter().all(|&c| c > 240));
+        assert!(
+            scale.rgb(-2.0)[2] > 2 * scale.rgb(-2.0)[0]
+                && scale.rgb(2.0)[0] > 2 * scale.rgb(2.0)[2]
+        );
     }
 
     #[test]

@@ -36,7 +36,7 @@ pub fn database() -> Arc<Database> {
     static DATABASE: LazyLock<Arc<Database>> = LazyLock::new(|| {
         let mut db = Database::new();
         for face in FACES {
-            db.load_font_data(face.to_vec());
+            db.load_font_data(without_local_forms(face));
         }
         for generic in [Database::set_sans_serif_family, Database::set_serif_family] {
             generic(&mut db, FAMILY);
@@ -44,6 +44,17 @@ pub fn database() -> Arc<Database> {
         Arc::new(db)
     });
     Arc::clone(&DATABASE)
+}
+
+/// The face with its `locl` feature renamed to one that nobody asks for.
+///
+/// It draws Greek Γ and γ as the Latin letters Ɣ and ɣ where the run of text began in Latin script, as our labels do.
+fn without_local_forms(face: &[u8]) -> Vec<u8> {
+    let mut face = face.to_vec();
+    while let Some(at) = face.windows(4).position(|w| w == b"locl") {
+        face[at..at + 4].copy_from_slice(b"none");
+    }
+    face
 }
 
 /// `@font-face` rules that make an SVG or HTML page look the same on every machine.

@@ -1,4 +1,4 @@
-//! Pixels of tubes: orthographic, z-buffered, supersampled, shaded in linear light.
+//! Pixels of capsules and of the tubes they make: orthographic, z-buffered, supersampled, shaded in linear light.
 
 use super::color::{from_linear, to_linear};
 use super::tube::{Tube, key_light};
@@ -21,25 +21,57 @@ pub struct Window {
     pub scale: f64,
 }
 
+/// What a line of sight meets first.
 #[derive(Clone, Copy)]
-struct Hit {
-    depth: f64,
-    piece: u32,
-    along: f32,
+pub struct Hit {
+    /// View coordinate towards the reader.
+    pub depth: f64,
+    /// Index of the capsule.
+    pub piece: u32,
+    /// Fraction along its axis.
+    pub along: f32,
+}
+
+/// What light a surface point gets, each from 0 to 1.
+#[derive(Clone, Copy)]
+pub struct Light {
+    /// Openness to the sky.
+    pub sky: f32,
+    /// Openness to the key light.
+    pub key: f32,
+    /// Distance from the nearest thing shown, 1 at the farthest.
+    pub behind: f32,
 }
 
 /// Picture of one tube on a transparent ground; `None` when the window has no pixels.
 pub fn draw(tube: &Tube, window: &Window) -> Option<Pixmap> {
-    let mut pixmap = Pixmap::new(window.width, window.height)?;
-    let (w, h) = (window.width as usize * SUB, window.height as usize * SUB);
-    let scale = window.scale * SUB as f64;
-    let hits = cast(tube, window, w, h);
     let colors: Vec<[f32; 3]> = tube.colors.iter().map(|c| c.map(to_linear)).collect();
     let depths = tube.points.iter().map(|p| p.z);
     let (near, far) = depths.fold((f64::MIN, f64::MAX), |(a, b), z| (a.max(z), b.min(z)));
     let span = (near - far).max(4.0 * tube.radius);
-    let pixels = pixmap.pixels_mut();
-    for (i, pixel) in pixels.iter_mut().enumerate() {
+    let pieces =
+        (0..tube.n_pieces()).map(|i| (tube.points[i], tube.points[tube.next(i)], tube.radius));
+    resolve(window, &cast(pieces, window), |p, hit| {
+        let (place, normal) = tube.surface(hit.piece as usize, f64::from(hit.along), p);
+        let [sky, key] = tube.light(place, &normal);
+        let (i, along) = (place.floor() as usize, place.fract() as f32);
+        let j = tube.next(i);
+        let albedo = std::array::from_fn(|k| colors[i][k] + (colors[j][k] - colors[i][k]) * along);
+        let behind = ((near - hit.depth) / span).clamp(0.0, 1.0) as f32;
+        shade(albedo, &normal, Light { sky, key, behind })
+    })
+}
+
+/// Pixels from what each subpixel meets; `color` gives linear light at a surface point.
+pub fn resolve(
+    window: &Window,
+    hits: &[Option<Hit>],
+    color: impl Fn(&Vector3<f64>, &Hit) -> [f32; 3],
+) -> Option<Pixmap> {
+    let mut pixmap = Pixmap::new(window.width, window.height)?;
+    let (w, h) = (window.width as usize * SUB, window.height as usize * SUB);
+    let scale = window.scale * SUB as f64;
+    for (i, pixel) in pixmap.pixels_mut().iter_mut().enumerate() {
         let (px, py) = (i % window.width as usize, i / window.width as usize);
         let (mut sum, mut n_hit) = ([0.0_f32; 3], 0_u32);
         for sy in 0..SUB {
@@ -47,12 +79,13 @@ pub fn draw(tube: &Tube, window: &Window) -> Option<Pixmap> {
                 let Some(hit) = &hits[(py * SUB + sy) * w + px * SUB + sx] else {
                     continue;
                 };
-                let behind = ((near - hit.depth) / span).clamp(0.0, 1.0) as f32;
                 let x = (px * SUB + sx) as f64 + 0.5 - w as f64 / 2.0;
                 let y = h as f64 / 2.0 - (py * SUB + sy) as f64 - 0.5;
                 let [x, y] = [window.center[0] + x / scale, window.center[1] + y / scale];
-                let light = shade(tube, &colors, Vector3::new(x, y, hit.depth), hit, behind);
-                for (s, l) in sum.iter_mut().zip(light) {
+                for (s, l) in sum
+                    .iter_mut()
+                    .zip(color(&Vector3::new(x, y, hit.depth), hit))
+                {
                     *s += l;
                 }
                 n_hit += 1;
@@ -70,38 +103,37 @@ pub fn draw(tube: &Tube, window: &Window) -> Option<Pixmap> {
     Some(pixmap)
 }
 
-fn shade(tube: &Tube, colors: &[[f32; 3]], p: Vector3<f64>, hit: &Hit, behind: f32) -> [f32; 3] {
-    let (place, normal) = tube.surface(hit.piece as usize, f64::from(hit.along), &p);
-    let [sky, lit] = tube.light(place, &normal);
-    let (i, along) = (place.floor() as usize, place.fract() as f32);
-    let j = tube.next(i);
+/// Linear light that a surface sends to the reader.
+pub fn shade(albedo: [f32; 3], normal: &Vector3<f64>, light: Light) -> [f32; 3] {
     let key = key_light();
-    let diffuse = normal.dot(&key).max(0.0) as f32 * lit;
+    let diffuse = normal.dot(&key).max(0.0) as f32 * light.key;
     let half = (key + Vector3::z()).normalize();
-    let gloss = (normal.dot(&half).max(0.0) as f32).powi(48) * lit * 0.22;
+    let gloss = (normal.dot(&half).max(0.0) as f32).powi(48) * light.key * 0.22;
     let up = 0.5 + 0.5 * normal.y as f32;
-    let ambient = (0.26 + 0.16 * up) * sky;
+    let ambient = (0.26 + 0.16 * up) * light.sky;
     // Edges fall off a little, so that strands of one colour part where they cross.
     let rim = 0.55 + 0.45 * (normal.z as f32 / 0.45).clamp(0.0, 1.0).sqrt();
     // Distance takes light away, as in a dim room: the depth cue.
-    let cue = 1.0 - 0.34 * behind;
-    std::array::from_fn(|k| {
-        let albedo = colors[i][k] + (colors[j][k] - colors[i][k]) * along;
+    let cue = 1.0 - 0.34 * light.behind;
+    albedo.map(|albedo| {
         // Light that bounces between bright walls makes their creases less dark.
-        let fill = ambient / (1.0 - 0.6 * albedo * (1.0 - sky));
+        let fill = ambient / (1.0 - 0.6 * albedo * (1.0 - light.sky));
         (albedo * (fill + 0.86 * diffuse) * rim + gloss) * cue
     })
 }
 
-fn cast(tube: &Tube, window: &Window, w: usize, h: usize) -> Vec<Option<Hit>> {
+/// What each subpixel of the window meets first of capsules (ends, radius).
+pub fn cast(
+    pieces: impl Iterator<Item = (Vector3<f64>, Vector3<f64>, f64)>,
+    window: &Window,
+) -> Vec<Option<Hit>> {
+    let (w, h) = (window.width as usize * SUB, window.height as usize * SUB);
     let mut hits: Vec<Option<Hit>> = vec![None; w * h];
     let scale = window.scale * SUB as f64;
     let (ox, oy) = (window.center[0], window.center[1]);
     let to_x = |x: f64| (x - ox) * scale + w as f64 / 2.0;
     let to_y = |y: f64| h as f64 / 2.0 - (y - oy) * scale;
-    let r = tube.radius;
-    for i in 0..tube.n_pieces() {
-        let (a, b) = (tube.points[i], tube.points[tube.next(i)]);
+    for (i, (a, b, r)) in pieces.enumerate() {
         let clip = |v: f64, n: usize| v.clamp(0.0, n as f64) as usize;
         let x0 = clip(to_x(a.x.min(b.x) - r).floor(), w);
         let x1 = clip(to_x(a.x.max(b.x) + r).ceil(), w);

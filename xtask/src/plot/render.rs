@@ -79,6 +79,17 @@ mod tests {
     }
 
     #[test]
+    fn a_greek_letter_after_a_latin_one_stays_greek() {
+        let drawn = |text: &str| {
+            let svg = format!(
+                r##"<svg xmlns="http://www.w3.org/2000/svg" width="60" height="30"><text x="5" y="20" font-size="16">{text}</text></svg>"##
+            );
+            pixels(&svg, 1.0).unwrap().take()
+        };
+        assert!(drawn("RΓ") != drawn("RƔ") && drawn("Rγ") != drawn("Rɣ"));
+    }
+
+    #[test]
     fn broken_svg_is_an_error() {
         assert!(pixels("<svg", 1.0).is_err());
     }

@@ -1,0 +1,128 @@
+//! What the nematic figures share: the colloid in three dimensions, its colours, the foot.
+
+pub mod charging;
+pub mod discharge;
+mod slice;
+
+use super::Quality;
+use super::series::step;
+use crate::data::{DefectLine, NematicSweep, Slice};
+use crate::plot::color::{Rgb, Scale};
+use crate::plot::panel::Axis;
+use crate::plot::solids::{Solids, view};
+use nalgebra::Vector3;
+use topo_analysis::buckling;
+
+/// Colour of director rods.
+const ROD: Rgb = [120, 160, 110];
+/// Colour of a defect line without a known profile.
+const UNKNOWN: Rgb = [150, 150, 150];
+
+/// Colours of the profile angle, from +1/2 (0 degrees) over twisted (90) to −1/2 (180).
+pub fn profile_scale() -> Scale {
+    Scale::viridis(0.0, 180.0)
+}
+
+/// The particle, coloured from blue to yellow by the horizontal component cos qφ sin θ of its anchoring.
+fn particle(solids: &mut Solids<'_>, radius: f64, q: u32) {
+    let scale = Scale::blue_to_yellow();
+    solids.painted_sphere(Vector3::zeros(), radius, move |n| {
+        let across = (n.x * n.x + n.y * n.y).sqrt();
+        scale.rgb(across * (f64::from(q) * n.y.atan2(n.x)).cos())
+    });
+}
+
+/// The charged colloid with its defect lines, seen a little from above.
+pub fn colloid(
+    radius: f64,
+    q: u32,
+    lines: &[DefectLine],
+    slice: Option<&Slice>,
+    height: f64,
+) -> Solids<'static> {
+    let mut solids = Solids::default();
+    particle(&mut solids, radius, q);
+    let scale = profile_scale();
+    for line in lines.iter().filter(|l| l.time.is_none()) {
+        let colors: Vec<Rgb> = line
+            .angles
+            .iter()
+            .map(|a| a.map_or(UNKNOWN, |a| scale.rgb(a)))
+            .collect();
+        solids.line(&line.points, &colors, line.closed, 0.055 * radius);
+    }
+    if let Some(slice) = slice {
+        rods(&mut solids, slice, radius);
+    }
+    solids.turned(&view(-90.0, height))
+}
+
+/// Director rods of a slice, thinned to about 28 along the wider side.
+fn rods(solids: &mut Solids<'_>, slice: &Slice, radius: f64) {
+    let pitch = slice.pitch();
+    let [half_x, half_z] = slice.half_size();
+    let stride = ((2.0 * half_x.max(half_z) / pitch / 28.0).round().max(1.0)) as i64;
+    let long = 0.4 * stride as f64 * pitch;
+    for p in &slice.points {
+        let (i, k) = (
+            (p.x / pitch - 0.5).round() as i64,
+            (p.z / pitch - 0.5).round() as i64,
+        );
+        let outside = p.x.hypot(p.z) > radius + 0.6 * pitch;
+        if i.rem_euclid(stride) == 0 && k.rem_euclid(stride) == 0 && outside {
+            let (at, n) = (Vector3::new(p.x, 0.0, p.z), Vector3::new(p.nx, p.ny, p.nz));
+            solids.rod([at - n * long, at + n * long], 0.12 * long, ROD);
+        }
+    }
+}
+
+/// Axis over the windings of a sweep.
+pub fn winding_axis(sweep: &NematicSweep) -> Axis {
+    let high = sweep.rows.last().map_or(1.0, |r| f64::from(r.q));
+    let low = sweep.rows.first().map_or(0.0, |r| f64::from(r.q));
+    Axis::linear(
+        "Topological charge *q*",
+        (low - 0.5, high + 0.5),
+        step(high - low + 1.0, 6.0),
+    )
+}
+
+/// Place of the dashed line that marks the buckling, between the last flat and the first buckled ring.
+pub fn onset(sweep: &NematicSweep) -> Option<f64> {
+    buckling(&sweep.rows).map(|q| f64::from(q) - 0.5)
+}
+
+/// Foot of the nematic figures: quality, and where the runs depart from the published ones.
+pub fn face(sweep: &NematicSweep, quality: Quality) -> Vec<String> {
+    let first = &sweep.rows[0];
+    let flow = match (first.flow.as_str(), sweep.flowing.is_empty()) {
+        ("on", _) => "with flow".to_owned(),
+        (_, true) => "without flow".to_owned(),
+        _ => format!(
+            "without flow but where *q* = {} is shown with it",
+            sweep
+                .flowing
+                .iter()
+                .map(|r| r.q.to_string())
+                .collect::<Vec<_>>()
+                .join(", ")
+        ),
+    };
+    let size = if (first.radius - 52.5).abs() < 1e-9 {
+        "as published".to_owned()
+    } else {
+        "published: 52.5, with flow".to_owned()
+    };
+    vec![
+        format!(
+            "{quality} quality: {} charges, radius *R* = {} ξ_{{N}} ({size}), spacing {} ξ_{{N}}, {flow}.",
+            sweep.rows.len(),
+            first.radius,
+            first.spacing
+        ),
+        format!(
+            "Particle surface by {}, periodic sides, perpendicular plates; energies in *L*ξ_{{N}}, times in τ_{{N}} or *R*^{{2}}/Γ*L*.",
+            first.boundary
+        ),
+    ]
+}
