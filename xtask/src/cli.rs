@@ -34,6 +34,10 @@ pub enum Command {
   cargo xtask accuracy                       the draft preset
   cargo xtask accuracy --quality standard")]
     Accuracy(AccuracyArgs),
+    /// Compare the numbers of two results folders to the byte, but for what tells how long they took.
+    #[command(after_help = "Example:
+  cargo xtask compare results results-again")]
+    Compare(CompareArgs),
     /// Run every test, doc test and example of the workspace.
     #[command(after_help = "Examples:
   cargo xtask test           everything but the long tests
@@ -95,6 +99,15 @@ pub struct WorkArgs {
     /// Compute everything anew.
     #[arg(long)]
     pub fresh: bool,
+}
+
+/// Options of `compare`.
+#[derive(Debug, Args)]
+pub struct CompareArgs {
+    /// A results folder.
+    pub first: PathBuf,
+    /// Another.
+    pub second: PathBuf,
 }
 
 /// Options of `test`.

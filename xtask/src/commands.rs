@@ -4,6 +4,7 @@ mod accuracy;
 mod bench;
 mod cargo;
 mod ci;
+mod compare;
 mod figures;
 mod run;
 mod test;
@@ -19,6 +20,7 @@ pub fn dispatch(cli: Cli) -> Result<(), XtaskError> {
         Command::Figures(args) => figures::run(&args),
         Command::Run(args) => run::run(&args),
         Command::Accuracy(args) => accuracy::run(&args),
+        Command::Compare(args) => compare::run(&args),
         Command::Test(args) => test::run(&args),
         Command::Ci => ci::run(),
         Command::Bench(args) => bench::run(&args),

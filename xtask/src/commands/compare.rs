@@ -1,0 +1,182 @@
+//! `cargo xtask compare DIR DIR`: whether two results folders hold the same numbers, to the byte.
+
+use crate::cli::CompareArgs;
+use crate::error::XtaskError;
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+/// Columns and keys that tell how long or how much, not what came out.
+const DROPPED: [&str; 3] = ["cpu_seconds", "peak_bytes", "timings"];
+/// Files about the making of the results, and pictures of them.
+const SKIPPED: [&str; 2] = ["provenance.json", "index.html"];
+/// Most differences told one by one.
+const TOLD: usize = 20;
+
+pub fn run(args: &CompareArgs) -> Result<(), XtaskError> {
+    let differences = differences(&args.first, &args.second)?;
+    for line in differences.iter().take(TOLD) {
+        println!("{line}");
+    }
+    if differences.len() > TOLD {
+        println!("and {} more", differences.len() - TOLD);
+    }
+    if differences.is_empty() {
+        println!(
+            "the same: {} and {}, but for {}",
+            args.first.display(),
+            args.second.display(),
+            DROPPED.join(", ")
+        );
+        Ok(())
+    } else {
+        Err(XtaskError::Step(format!(
+            "{} files differ",
+            differences.len()
+        )))
+    }
+}
+
+/// A line for each file that is not the same in both folders.
+fn differences(first: &Path, second: &Path) -> Result<Vec<String>, XtaskError> {
+    let (a, b) = (files(first)?, files(second)?);
+    let mut lines = Vec::new();
+    for name in a.union(&b) {
+        let told = name.display();
+        match (a.contains(name), b.contains(name)) {
+            (true, false) => lines.push(format!("{told}: only in {}", first.display())),
+            (false, true) => lines.push(format!("{told}: only in {}", second.display())),
+            _ => {
+                let (x, y) = (essence(&first.join(name))?, essence(&second.join(name))?);
+                if x != y {
+                    let place = x.iter().zip(&y).position(|(p, q)| p != q);
+                    let line = place.map_or(x.len().min(y.len()), |k| k) + 1;
+                    lines.push(format!("{told}: differs from line {line} on"));
+                }
+            }
+        }
+    }
+    Ok(lines)
+}
+
+/// Paths of the files below a folder, relative to it; what a command left unfinished is not among them.
+fn files(folder: &Path) -> Result<BTreeSet<PathBuf>, XtaskError> {
+    let mut found = BTreeSet::new();
+    let mut open = vec![PathBuf::new()];
+    while let Some(inner) = open.pop() {
+        let place = folder.join(&inner);
+        let fail = |source| XtaskError::File {
+            path: place.clone(),
+            source,
+        };
+        for entry in std::fs::read_dir(&place).map_err(fail)? {
+            let entry = entry.map_err(fail)?;
+            let (name, path) = (entry.file_name(), inner.join(entry.file_name()));
+            if entry.file_type().map_err(fail)?.is_dir() {
+                open.push(path);
+            } else if SKIPPED.iter().all(|s| name != *s)
+                && path.extension().is_some_and(|e| e == "csv" || e == "json")
+            {
+                found.insert(path);
+            }
+        }
+    }
+    Ok(found)
+}
+
+/// Lines of a file without what may differ between two runs of the same numbers.
+fn essence(path: &Path) -> Result<Vec<String>, XtaskError> {
+    let wrong = |reason: String| XtaskError::Table {
+        path: path.to_owned(),
+        reason,
+    };
+    let text = std::fs::read_to_string(path).map_err(|source| XtaskError::File {
+        path: path.to_owned(),
+        source,
+    })?;
+    if path.extension().is_some_and(|e| e == "json") {
+        let mut value = serde_json::from_str(&text).map_err(|e| wrong(e.to_string()))?;
+        drop_keys(&mut value);
+        let text = serde_json::to_string_pretty(&value).map_err(|e| wrong(e.to_string()))?;
+        return Ok(text.lines().map(str::to_owned).collect());
+    }
+    let mut reader = csv::ReaderBuilder::new()
+        .has_headers(false)
+        .from_reader(text.as_bytes());
+    let rows: Vec<csv::StringRecord> = reader
+        .records()
+        .collect::<Result<_, _>>()
+        .map_err(|e| wrong(e.to_string()))?;
+    let kept: Vec<usize> = rows.first().map_or(Vec::new(), |header| {
+        (0..header.len())
+            .filter(|&k| !DROPPED.contains(&&header[k]))
+            .collect()
+    });
+    let line = |row: &csv::StringRecord| {
+        let cells: Vec<&str> = kept.iter().filter_map(|&k| row.get(k)).collect();
+        cells.join(",")
+    };
+    Ok(rows.iter().map(line).collect())
+}
+
+fn drop_keys(value: &mut serde_json::Value) {
+    match value {
+        serde_json::Value::Object(map) => {
+            map.retain(|key, _| !DROPPED.contains(&key.as_str()));
+            map.values_mut().for_each(drop_keys);
+        }
+        serde_json::Value::Array(items) => items.iter_mut().for_each(drop_keys),
+        _ => {}
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn folder(seconds: &str, energy: &str) -> tempfile::TempDir {
+        let dir = tempfile::tempdir().unwrap();
+        let put = |name: &str, text: String| {
+            let path = dir.path().join(name);
+            std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+            std::fs::write(path, text).unwrap();
+        };
+        put(
+            "elastic/sweep.csv",
+            format!("knot,energy,cpu_seconds,warnings\n3_1,{energy},{seconds},\n"),
+        );
+        put(
+            "elastic/a/run.json",
+            format!(
+                "{{\"rows\":[{{\"energy\":{energy},\"cpu_seconds\":{seconds}}}],\"timings\":{{\"x\":{seconds}}}}}"
+            ),
+        );
+        put("provenance.json", seconds.to_owned());
+        dir
+    }
+
+    #[test]
+    fn times_may_differ_and_numbers_may_not() {
+        let (a, b, c) = (
+            folder("1.5", "0.25"),
+            folder("9", "0.25"),
+            folder("9", "0.250"),
+        );
+        let told = |x: &tempfile::TempDir, y: &tempfile::TempDir| differences(x.path(), y.path());
+        assert_eq!(told(&a, &b).unwrap(), Vec::<String>::new());
+        assert_eq!(
+            told(&a, &c).unwrap(),
+            ["elastic/sweep.csv: differs from line 2 on"]
+        );
+        std::fs::remove_file(b.path().join("elastic/a/run.json")).unwrap();
+        let lines = told(&a, &b).unwrap();
+        assert!(lines.len() == 1 && lines[0].contains("only in"));
+        std::fs::write(c.path().join("elastic/a/run.json"), "{").unwrap();
+        assert!(told(&a, &c).is_err());
+        assert_eq!(
+            differences(a.path(), &a.path().join("nowhere"))
+                .unwrap_err()
+                .exit_code(),
+            2
+        );
+    }
+}
