@@ -1,0 +1,18 @@
+//! Creeping flow on the staggered grid: the field, the solvers behind one trait, and the particle at rest in it.
+
+mod drive;
+mod error;
+mod field;
+mod no_slip;
+mod reduce;
+mod sites;
+mod solver;
+mod spectral;
+
+pub use drive::Drive;
+pub use error::StokesError;
+pub use field::MacField;
+pub use no_slip::{NoSlip, NoSlipReport};
+pub use sites::FaceSites;
+pub use solver::StokesSolver;
+pub use spectral::Spectral;

@@ -1,0 +1,140 @@
+//! What drives the fluid besides the director: a body force, moving walls, a mean flow.
+
+use serde::{Deserialize, Serialize};
+use topo_core::finite;
+
+use crate::grid::{Faces, Grid};
+use crate::stokes::{MacField, StokesError};
+
+/// Uniform body force, velocities of the walls, mean velocity of a fully periodic fluid; all zero by default.
+///
+/// A wall moving with U acts on its neighbours as the force 2 eta U/h^2, since the ghost value 2U - u replaces -u: to a solver,
+/// every drive is a force.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Drive {
+    /// Force per volume, uniform.
+    pub body_force: [f64; 3],
+    /// Velocity of the lower and the upper wall along each axis: tangential.
+    pub wall_velocity: [[[f64; 3]; 2]; 3],
+    /// Mean velocity; only where all sides are periodic.
+    pub mean_velocity: [f64; 3],
+}
+
+impl Drive {
+    /// Whether everything is at rest.
+    pub fn is_zero(&self) -> bool {
+        *self == Self::default()
+    }
+
+    /// Checks the drive against the sides of `grid`.
+    ///
+    /// # Errors
+    /// [`StokesError`] for numbers that are not finite, body forces that nothing balances, walls that move along their normal or
+    /// do not exist, and mean velocities where walls decide.
+    pub fn check(&self, grid: &Grid) -> Result<(), StokesError> {
+        for x in self.body_force {
+            finite("body_force", x)?;
+        }
+        for x in self.mean_velocity {
+            finite("mean_velocity", x)?;
+        }
+        let periodic = grid.faces() == [Faces::Periodic; 3];
+        if periodic && self.body_force != [0.0; 3] {
+            return Err(StokesError::Unbalanced);
+        }
+        if !periodic && self.mean_velocity != [0.0; 3] {
+            return Err(StokesError::MeanVelocity);
+        }
+        for axis in 0..3 {
+            for (side, velocity) in ["lower", "upper"].into_iter().zip(self.wall_velocity[axis]) {
+                for x in velocity {
+                    finite("wall_velocity", x)?;
+                }
+                let walled = grid.faces()[axis] == Faces::Wall;
+                if velocity[axis] != 0.0 || !(walled || velocity == [0.0; 3]) {
+                    return Err(StokesError::WallVelocity { axis, side });
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds the forces that stand for the body force and the walls, in a fluid of viscosity `viscosity`.
+    pub(crate) fn add_force(&self, grid: &Grid, viscosity: f64, force: &mut MacField) {
+        if self.is_zero() {
+            return;
+        }
+        for component in 0..3 {
+            let body = self.body_force[component];
+            if body != 0.0 {
+                for x in force.component_mut(component) {
+                    *x += body;
+                }
+            }
+        }
+        let stress = 2.0 * viscosity / grid.spacing().powi(2);
+        self.for_wall_faces(grid, |component, index, velocity| {
+            force.component_mut(component)[index] += stress * velocity;
+        });
+        self.clear_walls(grid, force);
+    }
+
+    /// Work per time of body force and walls on a fluid that moves with `velocity`, their own motion included.
+    pub(crate) fn power(&self, grid: &Grid, viscosity: f64, velocity: &MacField) -> f64 {
+        let h = grid.spacing();
+        let volume = h.powi(3);
+        let stress = 2.0 * viscosity / h.powi(2);
+        let mut power = 0.0;
+        for component in 0..3 {
+            if self.body_force[component] != 0.0 {
+                let flux: f64 = velocity.component(component).iter().sum();
+                power += self.body_force[component] * flux * volume;
+            }
+        }
+        self.for_wall_faces(grid, |component, index, wall| {
+            power += volume * stress * wall * (wall - velocity.component(component)[index]);
+        });
+        power
+    }
+
+    /// Calls `visit(component, index, wall velocity)` for every tangential face next to a moving wall.
+    fn for_wall_faces(&self, grid: &Grid, mut visit: impl FnMut(usize, usize, f64)) {
+        let cells = grid.cells();
+        for axis in 0..3 {
+            for (end, velocity) in [0, cells[axis] - 1]
+                .into_iter()
+                .zip(self.wall_velocity[axis])
+            {
+                for component in (0..3).filter(|&c| velocity[c] != 0.0) {
+                    let [a, b] = [(axis + 1) % 3, (axis + 2) % 3];
+                    for (m, n) in (0..cells[b]).flat_map(|n| (0..cells[a]).map(move |m| (m, n))) {
+                        let mut ijk = [0; 3];
+                        (ijk[axis], ijk[a], ijk[b]) = (end, m, n);
+                        let on_other_wall =
+                            grid.faces()[component] == Faces::Wall && ijk[component] == 0;
+                        if !on_other_wall {
+                            visit(component, grid.index(ijk), velocity[component]);
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// No force acts on the normal component at a wall.
+    fn clear_walls(&self, grid: &Grid, force: &mut MacField) {
+        let [n_x, n_y, n_z] = grid.cells();
+        for axis in (0..3).filter(|&a| grid.faces()[a] == Faces::Wall) {
+            for n in 0..grid.n_cells() / grid.cells()[axis] {
+                let ijk = match axis {
+                    0 => [0, n % n_y, n / n_y],
+                    1 => [n % n_x, 0, n / n_x],
+                    _ => [n % n_x, n / n_x, 0],
+                };
+                debug_assert!(ijk[2] < n_z);
+                force.component_mut(axis)[grid.index(ijk)] = 0.0;
+            }
+        }
+    }
+}
