@@ -80,22 +80,33 @@ impl Drive {
         self.clear_walls(grid, force);
     }
 
-    /// Work per time of body force and walls on a fluid that moves with `velocity`, their own motion included.
-    pub(crate) fn power(&self, grid: &Grid, viscosity: f64, velocity: &MacField) -> f64 {
-        let h = grid.spacing();
-        let volume = h.powi(3);
-        let stress = 2.0 * viscosity / h.powi(2);
-        let mut power = 0.0;
-        for component in 0..3 {
-            if self.body_force[component] != 0.0 {
-                let flux: f64 = velocity.component(component).iter().sum();
-                power += self.body_force[component] * flux * volume;
+    /// Adds the mean velocity.
+    pub(crate) fn add_mean(&self, velocity: &mut MacField) {
+        for component in (0..3).filter(|&c| self.mean_velocity[c] != 0.0) {
+            for u in velocity.component_mut(component) {
+                *u += self.mean_velocity[component];
             }
         }
+    }
+
+    /// Sum over all faces of `velocity` times the forces that [`add_force`](Self::add_force) adds.
+    pub(crate) fn dot(&self, grid: &Grid, viscosity: f64, velocity: &MacField) -> f64 {
+        let stress = 2.0 * viscosity / grid.spacing().powi(2);
+        let mut sum = velocity.dot_uniform(self.body_force);
         self.for_wall_faces(grid, |component, index, wall| {
-            power += volume * stress * wall * (wall - velocity.component(component)[index]);
+            sum += stress * wall * velocity.component(component)[index];
         });
-        power
+        sum
+    }
+
+    /// Work per time of body force and walls on a fluid that moves with `velocity`.
+    pub(crate) fn power(&self, grid: &Grid, viscosity: f64, velocity: &MacField) -> f64 {
+        let stress = 2.0 * viscosity / grid.spacing().powi(2);
+        let mut sum = velocity.dot_uniform(self.body_force);
+        self.for_wall_faces(grid, |component, index, wall| {
+            sum += stress * wall * (wall - velocity.component(component)[index]);
+        });
+        grid.spacing().powi(3) * sum
     }
 
     /// Calls `visit(component, index, wall velocity)` for every tangential face next to a moving wall.

@@ -77,16 +77,22 @@ impl MacField {
         })
     }
 
+    /// Sum over all faces of the product with the uniform vector `uniform`; skipped for components that are zero.
+    pub fn dot_uniform(&self, uniform: [f64; 3]) -> f64 {
+        let sum = |axis: usize| -> f64 { self.components[axis].iter().sum() };
+        (0..3)
+            .filter(|&axis| uniform[axis] != 0.0)
+            .map(|axis| uniform[axis] * sum(axis))
+            .sum()
+    }
+
     /// Largest magnitude of a component.
     pub fn max_abs(&self) -> f64 {
         let plane = self.cells[0] * self.cells[1];
         max_over(0..self.cells[2], &|k| {
             let values = (0..3).flat_map(|axis| &self.components[axis][k * plane..(k + 1) * plane]);
             // A NaN must not be lost.
-            values.fold(
-                0.0,
-                |max: f64, x| if x.abs() <= max { max } else { x.abs() },
-            )
+            values.fold(0.0, |max, x| larger(max, x.abs()))
         })
     }
 

@@ -167,6 +167,14 @@ impl NoSlip {
         &self.forces
     }
 
+    /// Sum over the boundary faces of force times `velocity`.
+    pub fn dot(&self, velocity: &MacField) -> f64 {
+        let faces = self.sites.iter().zip(&self.forces);
+        faces
+            .map(|((axis, index), force)| force * velocity.component(axis)[index])
+            .sum()
+    }
+
     /// Force that the particle exerts on the fluid: minus the drag, for cells of volume `volume`.
     pub fn total_force(&self, volume: f64) -> [f64; 3] {
         let mut total = [0.0; 3];

@@ -1,0 +1,14 @@
+//! The flow that the director drives, and what it does to the director.
+
+mod coupling;
+mod force;
+mod observables;
+mod rate;
+mod stencil;
+mod terms;
+
+pub use coupling::{FlowCounters, FlowCoupling, FlowParameters};
+pub use stencil::Stored;
+
+#[cfg(test)]
+mod tests;

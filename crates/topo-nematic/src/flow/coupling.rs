@@ -1,0 +1,340 @@
+//! Director and flow together.
+
+use fearless_simd::Level;
+use serde::{Deserialize, Serialize};
+use topo_core::{finite, positive};
+
+use super::force::{Director, Window};
+use super::observables;
+use super::rate::Flow;
+use super::stencil::{Stencil, Stored};
+use crate::grid::Grid;
+use crate::material::Material;
+use crate::particle::Particle;
+use crate::stokes::{Drive, MacField, NoSlip, Spectral, StokesError, StokesSolver};
+
+/// How the flow is computed.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct FlowParameters {
+    /// Accepted steps from one update of the velocity to the next.
+    pub every: usize,
+    /// Root mean square velocity left on the particle's boundary, over that without the particle.
+    pub boundary_residual: f64,
+    /// What drives the fluid besides the director.
+    pub drive: Drive,
+    /// Most memory the flow may take, in bytes.
+    pub memory_limit: u64,
+}
+
+impl Default for FlowParameters {
+    fn default() -> Self {
+        Self {
+            every: 1,
+            boundary_residual: 0.01,
+            drive: Drive::default(),
+            memory_limit: 16 << 30,
+        }
+    }
+}
+
+/// What the flow took so far.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct FlowCounters {
+    /// Updates of the velocity.
+    pub n_updates: u64,
+    /// Flow solves over the whole grid.
+    pub n_solves: u64,
+    /// Flow solves restricted to the particle's boundary, one an iteration of the no-slip condition.
+    pub n_boundary_solves: u64,
+    /// Iterations inside the flow solver; none if it is direct.
+    pub n_iterations: u64,
+}
+
+/// The velocity that the director drives, and its action on the director.
+///
+/// ```math
+/// \partial_t Q = -u \cdot \nabla Q - \Omega Q + Q \Omega + \chi [\tfrac23 D + DQ + QD] - 2 \chi (Q + I/3)(Q:D) + \Gamma H
+/// ```
+/// ```math
+/// \eta \nabla^2 u - \nabla p + f = 0, \qquad f_i = -H:\partial_i Q - \partial_j T_{ji}
+/// ```
+///
+/// with W_ij = d_i u_j, D and Omega its symmetric and antisymmetric part, and T the stress of co-rotation and alignment. Velocities
+/// live on faces, Q in cells: the flow terms are a linear map from velocity to rate, and the force is its discrete adjoint. So the
+/// power that the fluid takes from the director is exactly f.u, whatever the resolution.
+///
+/// Between updates the velocity is frozen. Memory is taken at set-up: neither [`update`](Self::update) nor
+/// [`add_rate`](Self::add_rate) allocates, and both give the same bits for any number of threads.
+///
+/// # Validation
+/// `law_flow_takes_the_energy_that_the_director_loses`, `val_director_aligns_at_the_leslie_angle`
+///
+/// # References
+/// `beris1994`, `patil2020discharging`
+pub struct FlowCoupling {
+    grid: Grid,
+    stencil: Stencil,
+    alignment: f64,
+    parameters: FlowParameters,
+    solver: Box<dyn StokesSolver>,
+    no_slip: Option<NoSlip>,
+    weights: Option<Vec<f64>>,
+    force: MacField,
+    velocity: MacField,
+    /// Unused between updates, so that an update needs no memory.
+    windows: Vec<Window>,
+    level: Level,
+    n_updates: u64,
+    n_steps: u64,
+    power: f64,
+    dissipation: f64,
+    residual: f64,
+}
+
+impl FlowCoupling {
+    /// The flow in `grid` around `particle`, if there is one, at rest.
+    ///
+    /// # Errors
+    /// [`StokesError`] for parameters outside their domain, drives that do not fit the sides, or too little memory.
+    pub fn new(
+        grid: &Grid,
+        particle: Option<&Particle>,
+        material: &Material,
+        parameters: &FlowParameters,
+    ) -> Result<Self, StokesError> {
+        let alignment = finite("flow_alignment", material.flow_alignment)?;
+        let viscosity = positive("viscosity", material.viscosity)?;
+        positive("flow.every", parameters.every as f64)?;
+        parameters.drive.check(grid)?;
+        let estimate = Self::n_bytes_estimate(grid, particle.is_some());
+        if estimate > parameters.memory_limit {
+            return Err(StokesError::Memory {
+                estimate,
+                limit: parameters.memory_limit,
+            });
+        }
+        let solver = Box::new(Spectral::new(grid, viscosity)?);
+        let no_slip = particle
+            .map(|p| NoSlip::sphere(grid, p.centre(), p.radius(), parameters.boundary_residual))
+            .transpose()?;
+        let weights = particle.map(|p| {
+            let solid = p.mask(grid);
+            solid.iter().map(|s| if *s { 0.0 } else { 1.0 }).collect()
+        });
+        let stencil = Stencil::new(grid, parameters.drive.wall_velocity);
+        Ok(Self {
+            grid: *grid,
+            alignment,
+            parameters: *parameters,
+            solver,
+            no_slip,
+            weights,
+            force: MacField::zeros(grid),
+            velocity: MacField::zeros(grid),
+            windows: (0..rayon::current_num_threads())
+                .map(|_| Window::new(&stencil))
+                .collect(),
+            stencil,
+            level: Level::new(),
+            n_updates: 0,
+            n_steps: 0,
+            power: 0.0,
+            dissipation: 0.0,
+            residual: 0.0,
+        })
+    }
+
+    /// Bytes the flow will take on `grid`, within a few percent.
+    pub fn n_bytes_estimate(grid: &Grid, with_particle: bool) -> u64 {
+        let cells = grid.n_cells() as u64;
+        let fields = 6 + u64::from(with_particle);
+        let plane = (grid.cells()[0] * grid.cells()[1]) as u64;
+        let threads = rayon::current_num_threads() as u64;
+        8 * (fields * cells + 33 * plane * threads) + Spectral::n_bytes_estimate(grid.cells())
+    }
+
+    /// Computes the velocity that `q` and the molecular field `h` drive; both component-major, 5 x n_cells.
+    ///
+    /// # Errors
+    /// [`StokesError::NotFinite`] for broken fields, [`StokesError::NotConverged`] of the particle or the solver.
+    ///
+    /// # Panics
+    /// When a field is not 5 x n_cells long.
+    pub fn update<T: Stored>(&mut self, q: &[T], h: &[T]) -> Result<(), StokesError> {
+        let n = 5 * self.grid.n_cells();
+        assert!(q.len() == n && h.len() == n, "fields of another grid");
+        let director = Director {
+            stencil: &self.stencil,
+            q,
+            h,
+            weights: self.weights.as_deref(),
+            alignment: self.alignment,
+        };
+        director.force(self.level, &mut self.windows, &mut self.force);
+        let viscosity = self.solver.viscosity();
+        let drive = &self.parameters.drive;
+        drive.add_force(&self.grid, viscosity, &mut self.force);
+        self.solver.solve(&self.force, &mut self.velocity)?;
+        let mut held = 0.0;
+        if let Some(no_slip) = &mut self.no_slip {
+            drive.add_mean(&mut self.velocity);
+            let report = no_slip.solve(self.solver.as_mut(), &self.velocity)?;
+            self.residual = report.residual;
+            no_slip.sites().add_to(no_slip.forces(), &mut self.force);
+            self.solver.solve(&self.force, &mut self.velocity)?;
+        }
+        let total = self.force.dot(&self.velocity);
+        drive.add_mean(&mut self.velocity);
+        if let Some(no_slip) = &self.no_slip {
+            held = no_slip.dot(&self.velocity);
+        }
+        // Power against the whole velocity, of which `total` lacks the mean flow.
+        let mean = self.force.dot_uniform(drive.mean_velocity);
+        let driven = drive.dot(&self.grid, viscosity, &self.velocity);
+        let volume = self.grid.spacing().powi(3);
+        self.power = volume * (total + mean - driven - held);
+        // The work of the pressure gradient that keeps the mean flow cancels that of the mean force.
+        self.dissipation =
+            volume * (total - driven) + drive.power(&self.grid, viscosity, &self.velocity);
+        if !(self.power.is_finite() && self.dissipation.is_finite()) {
+            return Err(StokesError::NotFinite);
+        }
+        self.n_updates += 1;
+        Ok(())
+    }
+
+    /// Counts an accepted step, and updates the velocity if its turn has come; whether it did.
+    ///
+    /// # Errors
+    /// As [`update`](Self::update).
+    pub fn after_step<T: Stored>(&mut self, q: &[T], h: &[T]) -> Result<bool, StokesError> {
+        self.n_steps += 1;
+        let due = self.n_steps.is_multiple_of(self.parameters.every as u64);
+        if due {
+            self.update(q, h)?;
+        }
+        Ok(due)
+    }
+
+    /// Whether the next accepted step brings an update.
+    pub fn is_due(&self) -> bool {
+        (self.n_steps + 1).is_multiple_of(self.parameters.every as u64)
+    }
+
+    /// Adds what the velocity of the last update does to `q` to `rate`; both component-major, 5 x n_cells.
+    ///
+    /// Zero in cells that are not fluid.
+    ///
+    /// # Panics
+    /// When a field is not 5 x n_cells long.
+    pub fn add_rate<T: Stored>(&self, q: &[T], rate: &mut [T]) {
+        let n = 5 * self.grid.n_cells();
+        assert!(q.len() == n && rate.len() == n, "fields of another grid");
+        self.flow().add_rate(self.level, q, rate);
+    }
+
+    fn flow(&self) -> Flow<'_> {
+        Flow {
+            stencil: &self.stencil,
+            velocity: &self.velocity,
+            weights: self.weights.as_deref(),
+            alignment: self.alignment,
+        }
+    }
+
+    /// Sets the share of each cell that is fluid (0 to 1), as it weighs H in the energy; at first it is 1 outside the particle
+    /// and 0 inside.
+    ///
+    /// # Panics
+    /// When there are not n_cells weights, or there is no particle.
+    pub fn set_weights(&mut self, weights: &[f64]) {
+        assert_eq!(
+            weights.len(),
+            self.grid.n_cells(),
+            "weights of another grid"
+        );
+        match &mut self.weights {
+            Some(own) => own.copy_from_slice(weights),
+            None => self.weights = Some(weights.to_vec()),
+        }
+    }
+
+    /// Share of each cell that is fluid; none where all is.
+    pub fn weights(&self) -> Option<&[f64]> {
+        self.weights.as_deref()
+    }
+
+    /// Velocity of the last update.
+    pub fn velocity(&self) -> &MacField {
+        &self.velocity
+    }
+
+    /// Velocity at the cell centres, component-major, 3 x n_cells: allocated for the caller.
+    pub fn centred_velocity(&self) -> Vec<f64> {
+        observables::centred(&self.velocity)
+    }
+
+    /// Curl of the velocity at the cell centres, component-major, 3 x n_cells: allocated for the caller.
+    pub fn vorticity(&self) -> Vec<f64> {
+        observables::vorticity(&self.flow(), self.level)
+    }
+
+    /// Largest velocity component on a face.
+    pub fn max_speed(&self) -> f64 {
+        self.velocity.max_abs()
+    }
+
+    /// Power f.u that the director gave to the fluid at the last update: the flow lowers its energy at this rate.
+    ///
+    /// With moving walls, their co-rotation and alignment of the cells next to them come on top.
+    pub fn power(&self) -> f64 {
+        self.power
+    }
+
+    /// Viscous dissipation at the last update: the power, the work of the drive, and what the boundary residual of the particle does.
+    pub fn dissipation(&self) -> f64 {
+        self.dissipation
+    }
+
+    /// Force that the particle exerts on the fluid; none without a particle.
+    pub fn particle_force(&self) -> Option<[f64; 3]> {
+        let volume = self.grid.spacing().powi(3);
+        self.no_slip.as_ref().map(|n| n.total_force(volume))
+    }
+
+    /// Root mean square velocity on the particle's boundary over that without the particle, at the last update.
+    pub fn boundary_residual(&self) -> f64 {
+        self.residual
+    }
+
+    /// What the flow took so far.
+    pub fn counters(&self) -> FlowCounters {
+        let [n_solves, n_boundary_solves] = self.solver.n_solves();
+        FlowCounters {
+            n_updates: self.n_updates,
+            n_solves,
+            n_boundary_solves,
+            n_iterations: self.solver.n_iterations(),
+        }
+    }
+
+    /// Name of the flow solver.
+    pub fn solver(&self) -> &'static str {
+        self.solver.name()
+    }
+
+    /// Bytes held.
+    pub fn n_bytes(&self) -> usize {
+        let windows: usize = self.windows.iter().map(Window::n_bytes).sum();
+        self.force.n_bytes()
+            + self.velocity.n_bytes()
+            + self.solver.n_bytes()
+            + self.no_slip.as_ref().map_or(0, NoSlip::n_bytes)
+            + self
+                .weights
+                .as_ref()
+                .map_or(0, |w| size_of_val(w.as_slice()))
+            + windows
+    }
+}
