@@ -9,6 +9,8 @@ mod series;
 #[cfg(test)]
 mod tests;
 
+pub use nematic::profile_scale;
+
 use crate::data::{self, Sweep};
 use crate::error::XtaskError;
 use crate::plot::canvas::{self, Picture};

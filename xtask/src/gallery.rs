@@ -6,6 +6,7 @@ use crate::figures::{Done, Quality};
 use crate::plot::font;
 use crate::plot::text::escape;
 use crate::provenance::Provenance;
+use crate::viewer;
 use std::fmt::Write;
 use std::path::Path;
 
@@ -27,22 +28,32 @@ pub fn write(
     quality: Quality,
     provenance: &Provenance,
 ) -> Result<(), XtaskError> {
+    let view = viewer::sections(results)?;
     data::write(
         &results.join("index.html"),
-        page(done, quality, provenance).as_bytes(),
+        page(done, &view, quality, provenance).as_bytes(),
     )
 }
 
-fn page(done: &[&Done], quality: Quality, provenance: &Provenance) -> String {
+fn page(done: &[&Done], view: &str, quality: Quality, provenance: &Provenance) -> String {
     let mut html = format!(
         "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\
          <meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\
-         <title>Topological batteries: figures</title><style>{}{STYLE}</style></head><body><main>\n\
+         <title>Topological batteries: figures</title><style>{}{STYLE}{}</style></head><body><main>\n\
          <h1>Topological batteries: figures</h1>\n\
          <p>Knotted elastic fibres store energy when they are twisted and fused, and give it back when \
          they are cut. {quality} quality; every number below is read from the tables beside this page.</p>\n<nav>",
-        font::style()
+        font::style(),
+        viewer::STYLE
     );
+    for (battery, label) in [("elastic", "Knots in 3D"), ("nematic", "Colloids in 3D")] {
+        if view.contains(&format!("id=\"view-{battery}\"")) {
+            add(
+                &mut html,
+                format_args!("<a href=\"#view-{battery}\">{label}</a> "),
+            );
+        }
+    }
     for d in done {
         add(
             &mut html,
@@ -75,6 +86,7 @@ fn page(done: &[&Done], quality: Quality, provenance: &Provenance) -> String {
             ),
         );
     }
+    html.push_str(view);
     html.push_str("<section id=\"provenance\"><h2>Provenance</h2><table>");
     for (key, value) in provenance.rows() {
         add(

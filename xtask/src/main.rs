@@ -13,6 +13,7 @@ mod progress;
 mod provenance;
 #[cfg(test)]
 mod synthetic;
+mod viewer;
 
 use clap::Parser;
 use std::process::ExitCode;

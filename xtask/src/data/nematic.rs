@@ -135,4 +135,18 @@ impl Slice {
             [x.max(p.x.abs() + half), z.max(p.z.abs() + half)]
         })
     }
+
+    /// Every `stride`-th point along both directions.
+    pub fn thinned(&self, stride: i64) -> impl Iterator<Item = &SlicePoint> {
+        self.shifted(stride, 0)
+    }
+
+    /// The same, `shift` points further along both.
+    pub fn shifted(&self, stride: i64, shift: i64) -> impl Iterator<Item = &SlicePoint> {
+        let pitch = self.pitch();
+        self.points.iter().filter(move |p| {
+            let place = |x: f64| (x / pitch - 0.5).round() as i64 - shift;
+            place(p.x).rem_euclid(stride) == 0 && place(p.z).rem_euclid(stride) == 0
+        })
+    }
 }

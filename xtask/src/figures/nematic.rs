@@ -63,13 +63,8 @@ fn rods(solids: &mut Solids<'_>, slice: &Slice, radius: f64) {
     let [half_x, half_z] = slice.half_size();
     let stride = ((2.0 * half_x.max(half_z) / pitch / 28.0).round().max(1.0)) as i64;
     let long = 0.4 * stride as f64 * pitch;
-    for p in &slice.points {
-        let (i, k) = (
-            (p.x / pitch - 0.5).round() as i64,
-            (p.z / pitch - 0.5).round() as i64,
-        );
-        let outside = p.x.hypot(p.z) > radius + 0.6 * pitch;
-        if i.rem_euclid(stride) == 0 && k.rem_euclid(stride) == 0 && outside {
+    for p in slice.thinned(stride) {
+        if p.x.hypot(p.z) > radius + 0.6 * pitch {
             let (at, n) = (Vector3::new(p.x, 0.0, p.z), Vector3::new(p.nx, p.ny, p.nz));
             solids.rod([at - n * long, at + n * long], 0.12 * long, ROD);
         }

@@ -6,6 +6,7 @@ use crate::plot::canvas::Canvas;
 use crate::plot::color::{INK, Scale};
 use crate::plot::render;
 use resvg::tiny_skia::{Pixmap, PremultipliedColorU8};
+use topo_analysis::SlicePoint;
 
 /// What a slice is drawn with.
 pub struct Look<'a> {
@@ -36,26 +37,16 @@ pub fn draw(
     let pitch = slice.pitch();
     let stride = ((2.0 * half_x / pitch / 16.0).round().max(1.0)) as i64;
     let apart = stride as f64 * pitch * unit;
-    for p in &slice.points {
-        let (i, k) = (
-            (p.x / pitch - 0.5).round() as i64,
-            (p.z / pitch - 0.5).round() as i64,
-        );
-        if p.x.hypot(p.z) < look.radius + 0.5 * pitch {
-            continue;
-        }
-        let at = [cx + p.x * unit, cy - p.z * unit];
-        if i.rem_euclid(stride) == 0 && k.rem_euclid(stride) == 0 {
-            let d = [0.36 * apart * p.nx, -0.36 * apart * p.nz];
-            let (from, to) = ([at[0] - d[0], at[1] - d[1]], [at[0] + d[0], at[1] + d[1]]);
-            canvas.line(from, to, "#5d9a4e", 0.9);
-        }
-        let middle = stride / 2;
-        if let (Some(ux), Some(uz)) = (p.ux, p.uz)
-            && (i - middle).rem_euclid(stride) == 0
-            && (k - middle).rem_euclid(stride) == 0
-        {
-            arrow(canvas, at, [ux, -uz].map(|u| u / look.speed * apart));
+    let outside = |p: &&SlicePoint| p.x.hypot(p.z) > look.radius + 0.5 * pitch;
+    let place = |p: &SlicePoint| [cx + p.x * unit, cy - p.z * unit];
+    for p in slice.thinned(stride).filter(outside) {
+        let (at, d) = (place(p), [0.36 * apart * p.nx, -0.36 * apart * p.nz]);
+        let (from, to) = ([at[0] - d[0], at[1] - d[1]], [at[0] + d[0], at[1] + d[1]]);
+        canvas.line(from, to, "#5d9a4e", 0.9);
+    }
+    for p in slice.shifted(stride, stride / 2).filter(outside) {
+        if let (Some(ux), Some(uz)) = (p.ux, p.uz) {
+            arrow(canvas, place(p), [ux, -uz].map(|u| u / look.speed * apart));
         }
     }
     canvas.raw(&format!(
