@@ -116,6 +116,14 @@ pub enum KnotError {
         "no projection of the curve is in general position; does the curve touch or overlap itself?"
     )]
     Degenerate,
+    /// The diagram has too many crossings for exact invariants.
+    #[error(
+        "the simplest diagram found has {n_crossings} crossings, too many for exact invariants; untangle or smooth the curve, or shorten the braid word"
+    )]
+    TooComplicated {
+        /// Its number of crossings.
+        n_crossings: usize,
+    },
     /// A setting is out of its range.
     #[error("setting `{name}` is {value}; {expected}")]
     Setting {

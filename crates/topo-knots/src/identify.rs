@@ -1,13 +1,15 @@
 //! Which knot of the table a closed or an open curve is.
 
 mod boxes;
+mod known;
 mod open;
 mod reduce;
 
 use serde::{Deserialize, Serialize};
 
 use crate::invariant::{Diagram, check_vertices, least_crossing};
-use crate::{Chirality, Invariants, KnotEntry, KnotError, KnotTable, V};
+use crate::{Invariants, Jones, KnotError, KnotTable, V};
+use known::{Finding, matches};
 use reduce::Reducer;
 
 pub use open::{OpenKnotType, identify_open};
@@ -16,6 +18,8 @@ pub use open::{OpenKnotType, identify_open};
 const N_PROJECTIONS: usize = 8;
 /// Further directions for the rare curve of which all of those are degenerate.
 const N_MORE_PROJECTIONS: usize = 64;
+/// Fewest crossings of a knot other than the unknot whose Alexander polynomial is 1.
+const LEAST_TRIVIAL_ALEXANDER: usize = 11;
 
 /// Which of a knot and its mirror image a curve is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -28,39 +32,58 @@ pub enum Handedness {
     Mirrored,
     /// The knot equals its mirror image.
     Amphichiral,
-    /// The signature is zero although the knot is chiral, so that these invariants cannot tell.
+    /// The invariants at hand do not tell the knot from its mirror image.
     Undecided,
 }
 
-/// Type of a closed curve as far as Alexander polynomial, determinant and signature tell.
+/// Type of a closed curve as far as Alexander polynomial, determinant, signature and Jones polynomial tell.
 ///
-/// These separate the knots of the built-in table from each other and from the unknot, but not from every knot beyond it.
+/// These separate all knots of at most eight crossings, sums included, from each other and their mirror images. Beyond, a name
+/// means that nothing contradicts it: see [`is_certain`](Self::is_certain).
+///
+/// # Validation
+/// `knots_of_eight_crossings_are_told_apart`, `names_the_table_and_its_mirrors`.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct KnotType {
-    /// Names in the table that fit, mirror images under the same name; `0_1` is the unknot; empty if none fits.
+    /// Names that fit, of the table or sums of its knots, mirror images under the same name; `0_1` is the unknot; empty if none
+    /// fits.
     pub names: Vec<String>,
     /// Handedness with respect to the first name.
     pub handedness: Handedness,
     /// The invariants found.
     pub invariants: Invariants,
+    /// Jones polynomial, if it was needed to decide and its diagram was not too wide.
+    pub jones: Option<Jones>,
+    /// Crossings of the simplest diagram that was found.
+    pub n_crossings: usize,
+    /// Whether the diagram is so small that every knot it could be was compared.
+    pub exhaustive: bool,
 }
 
 impl KnotType {
-    fn unknot() -> Self {
+    fn unknot(n_crossings: usize) -> Self {
         Self {
-            names: vec!["0_1".to_owned()],
+            names: vec![UNKNOT.to_owned()],
             handedness: Handedness::Amphichiral,
             invariants: Invariants {
                 alexander: vec![1],
                 determinant: 1,
                 signature: 0,
             },
+            jones: None,
+            n_crossings,
+            exhaustive: n_crossings < LEAST_TRIVIAL_ALEXANDER,
         }
     }
 
-    /// Whether the curve has the invariants of the unknot.
+    /// Whether the curve was found to be the unknot.
     pub fn is_unknot(&self) -> bool {
-        self.invariants.alexander == [1]
+        self.names.iter().any(|name| name == UNKNOT)
+    }
+
+    /// Whether the name is proved: only one fits, and the diagram has no more crossings than the table is complete for.
+    pub fn is_certain(&self) -> bool {
+        self.names.len() == 1 && self.exhaustive
     }
 
     /// The names that fit, separated by `|`; `unknown(...)` with the Alexander polynomial if none does.
@@ -71,19 +94,46 @@ impl KnotType {
             self.names.join("|")
         }
     }
+
+    /// The finding as a sentence: one name with its handedness, `ambiguous: 8_21 or 3_1#4_1`, or `unknown` with the invariants.
+    pub fn describe(&self) -> String {
+        match &self.names[..] {
+            [] => {
+                let jones = self.jones.as_ref().map_or_else(String::new, |jones| {
+                    format!(", Jones polynomial {}", jones.text())
+                });
+                format!(
+                    "unknown: no knot of the table nor sum of two has Alexander polynomial {}, signature {}{jones}",
+                    self.invariants.alexander_text(),
+                    self.invariants.signature
+                )
+            }
+            [name] if self.is_unknot() => format!("{name}, the unknot"),
+            [name] => match self.handedness {
+                Handedness::Tabulated => format!("{name}, as in the table"),
+                Handedness::Mirrored => format!("m{name}, the mirror image of {name}"),
+                Handedness::Amphichiral => format!("{name}, equal to its mirror image"),
+                Handedness::Undecided => format!("{name} or its mirror image"),
+            },
+            names => format!("ambiguous: {}", names.join(" or ")),
+        }
+    }
 }
+
+/// Name of the unknot.
+const UNKNOT: &str = "0_1";
 
 /// The knot type of the closed polygon through `vertices`.
 ///
 /// Vertices are removed while the triangle with their neighbours is free; what is left is projected and simplified,
-/// and its invariants are looked up in the table, then among the sums of two of its knots.
+/// and its invariants are looked up in the table and among the sums of two of its knots.
 ///
 /// # Errors
-/// [`KnotError::TooFewVertices`], [`KnotError::NotFinite`], and [`KnotError::Degenerate`] for a curve that runs through
-/// itself.
+/// [`KnotError::TooFewVertices`], [`KnotError::NotFinite`], [`KnotError::Degenerate`] for a curve that runs through itself, and
+/// [`KnotError::TooComplicated`] for one with hundreds of crossings.
 ///
 /// # Validation
-/// `names_the_table_and_its_mirrors`, `a_curve_passed_through_itself_is_caught`.
+/// `names_the_table_and_its_mirrors`, `a_curve_passed_through_itself_is_caught`, `composite_knots_multiply`.
 ///
 /// # References
 /// `koniaris1991`
@@ -91,18 +141,52 @@ pub fn identify(vertices: &[V], table: &KnotTable) -> Result<KnotType, KnotError
     check_vertices(vertices, true)?;
     let mut reducer = Reducer::default();
     reducer.load(vertices, true);
-    classify(&mut reducer, table)
+    classify(&mut reducer, table, Care::Handed)
+}
+
+/// How far to go in telling knots apart.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Care {
+    /// The Jones polynomial only where several names fit without it.
+    Name,
+    /// The Jones polynomial of everything that is knotted, for the handedness too.
+    Handed,
 }
 
 /// The type of the closed chain in `reducer`, which is reduced on the way.
-fn classify(reducer: &mut Reducer, table: &KnotTable) -> Result<KnotType, KnotError> {
-    match diagram(reducer)? {
-        None => Ok(KnotType::unknot()),
-        Some(diagram) => {
-            let found = Invariants::of_diagram(&diagram).ok_or(KnotError::Degenerate)?;
-            Ok(look_up(found, table))
+fn classify(reducer: &mut Reducer, table: &KnotTable, care: Care) -> Result<KnotType, KnotError> {
+    let diagram = match diagram(reducer)? {
+        Some(diagram) => diagram,
+        None => return Ok(KnotType::unknot(0)),
+    };
+    let n_crossings = diagram.n_crossings();
+    let invariants = Invariants::of_diagram(&diagram)?;
+    if invariants.alexander == [1] && n_crossings < LEAST_TRIVIAL_ALEXANDER {
+        return Ok(KnotType::unknot(n_crossings));
+    }
+    let mut finding = matches(&invariants, None, table);
+    let mut jones = None;
+    if care == Care::Handed || finding.names.len() > 1 {
+        jones = Invariants::jones_of(&diagram);
+        if jones.is_some() {
+            finding = matches(&invariants, jones.as_ref(), table);
         }
     }
+    if invariants.alexander == [1] && jones.as_ref().is_none_or(|jones| *jones == Jones::one()) {
+        return Ok(KnotType {
+            jones,
+            ..KnotType::unknot(n_crossings)
+        });
+    }
+    let Finding { names, handedness } = finding;
+    Ok(KnotType {
+        names,
+        handedness,
+        invariants,
+        jones,
+        n_crossings,
+        exhaustive: n_crossings <= table.complete_up_to() as usize,
+    })
 }
 
 /// A small diagram of the closed chain in `reducer`; none if it is seen to be the unknot.
@@ -116,69 +200,6 @@ fn diagram(reducer: &mut Reducer) -> Result<Option<Diagram>, KnotError> {
         .ok_or(KnotError::Degenerate)?;
     diagram.simplify();
     Ok((diagram.n_crossings() >= 3).then_some(diagram))
-}
-
-fn look_up(found: Invariants, table: &KnotTable) -> KnotType {
-    if found.alexander == [1] {
-        return KnotType {
-            invariants: found,
-            ..KnotType::unknot()
-        };
-    }
-    let mut names = Vec::new();
-    let mut handedness = Handedness::Undecided;
-    for knot in table.iter() {
-        if let Some(sense) = compare(&found, knot) {
-            if names.is_empty() {
-                handedness = sense;
-            }
-            names.push(knot.name.clone());
-        }
-    }
-    if names.is_empty() {
-        sums(&found, table, &mut names);
-    }
-    KnotType {
-        names,
-        handedness,
-        invariants: found,
-    }
-}
-
-fn compare(found: &Invariants, knot: &KnotEntry) -> Option<Handedness> {
-    let known = &knot.invariants;
-    if found.alexander != known.alexander || found.signature.abs() != known.signature.abs() {
-        return None;
-    }
-    Some(match (knot.chirality, known.signature) {
-        (Chirality::Amphichiral, _) => Handedness::Amphichiral,
-        (Chirality::Chiral, 0) => Handedness::Undecided,
-        (Chirality::Chiral, s) if s == found.signature => Handedness::Tabulated,
-        (Chirality::Chiral, _) => Handedness::Mirrored,
-    })
-}
-
-/// Names such as `3_1#4_1` and `3_1#m3_1` of the sums of two knots that fit.
-fn sums(found: &Invariants, table: &KnotTable, names: &mut Vec<String>) {
-    for (k, a) in table.iter().enumerate() {
-        for b in table.iter().skip(k) {
-            if a.invariants.determinant * b.invariants.determinant != found.determinant {
-                continue;
-            }
-            let alike = a.invariants.sum(&b.invariants);
-            if alike.alexander != found.alexander {
-                continue;
-            }
-            let unlike = a.invariants.sum(&b.invariants.mirror());
-            let size = found.signature.abs();
-            if alike.signature.abs() == size {
-                names.push(format!("{}#{}", a.name, b.name));
-            }
-            if unlike.signature.abs() == size && unlike.signature != alike.signature {
-                names.push(format!("{}#m{}", a.name, b.name));
-            }
-        }
-    }
 }
 
 #[cfg(test)]

@@ -3,15 +3,22 @@
 mod alexander;
 mod diagram;
 mod goeritz;
+mod jones;
 mod projection;
 
 use crate::{KnotError, V};
 
 pub(crate) use diagram::Diagram;
+pub use jones::Jones;
 pub(crate) use projection::{check_vertices, fibonacci_directions, least_crossing};
 
 /// Directions tried for the projection with the fewest crossings.
 const N_PROJECTIONS: usize = 30;
+
+/// Most crossings of a diagram whose invariants are computed: the work grows with their fourth power.
+const MOST_CROSSINGS: usize = 250;
+/// Crossings up to which all numbers on the way are exact for certain.
+const EXACT_CROSSINGS: usize = 40;
 
 /// Invariants of a closed curve.
 ///
@@ -40,27 +47,41 @@ impl Invariants {
     /// # References
     /// `alexander1928`, `gordon1978`
     pub fn of(vertices: &[V]) -> Result<Self, KnotError> {
-        check_vertices(vertices, true)?;
-        let mut diagram =
-            least_crossing(vertices, N_PROJECTIONS, 0).ok_or(KnotError::Degenerate)?;
-        diagram.simplify();
-        Self::of_diagram(&diagram).ok_or(KnotError::Degenerate)
+        Self::of_diagram(&diagram(vertices)?)
     }
 
-    /// Invariants of a diagram; none if polynomial and Goeritz matrix contradict each other.
-    pub(crate) fn of_diagram(diagram: &Diagram) -> Option<Self> {
-        let alexander = alexander::polynomial(diagram)?;
-        let (determinant, signature) = goeritz::determinant_and_signature(diagram)?;
-        let at_minus_one: i64 = alexander
-            .iter()
-            .enumerate()
-            .map(|(k, c)| if k % 2 == 0 { *c } else { -*c })
-            .sum();
-        (at_minus_one.unsigned_abs() == determinant).then_some(Self {
+    /// Invariants of a diagram.
+    ///
+    /// # Errors
+    /// [`KnotError::TooComplicated`] beyond the crossings served, [`KnotError::Degenerate`] if polynomial and Goeritz matrix
+    /// contradict each other.
+    pub(crate) fn of_diagram(diagram: &Diagram) -> Result<Self, KnotError> {
+        let n_crossings = diagram.n_crossings();
+        // Beyond this, the determinant of the Goeritz matrix may lose its last digit.
+        let failed = if n_crossings > EXACT_CROSSINGS {
+            KnotError::TooComplicated { n_crossings }
+        } else {
+            KnotError::Degenerate
+        };
+        if n_crossings > MOST_CROSSINGS {
+            return Err(failed);
+        }
+        let known = alexander::polynomial(diagram)
+            .zip(goeritz::determinant_and_signature(diagram))
+            .filter(|(alexander, (determinant, _))| at_minus_one(alexander) == *determinant);
+        let Some((alexander, (determinant, signature))) = known else {
+            return Err(failed);
+        };
+        Ok(Self {
             alexander,
             determinant,
             signature,
         })
+    }
+
+    /// Jones polynomial of a diagram; `None` if that would take too long.
+    pub(crate) fn jones_of(diagram: &Diagram) -> Option<Jones> {
+        jones::jones(diagram)
     }
 
     /// The invariants of the mirror image.
@@ -94,6 +115,35 @@ impl Invariants {
             .collect::<Vec<_>>()
             .join(" ")
     }
+}
+
+/// |Delta(-1)|
+fn at_minus_one(alexander: &[i64]) -> u64 {
+    let sum = alexander.iter().enumerate().fold(0_i128, |sum, (k, c)| {
+        sum + if k % 2 == 0 {
+            i128::from(*c)
+        } else {
+            -i128::from(*c)
+        }
+    });
+    u64::try_from(sum.unsigned_abs()).unwrap_or(u64::MAX)
+}
+
+/// The simplified diagram of the projection with the fewest crossings.
+fn diagram(vertices: &[V]) -> Result<Diagram, KnotError> {
+    check_vertices(vertices, true)?;
+    let mut diagram = least_crossing(vertices, N_PROJECTIONS, 0).ok_or(KnotError::Degenerate)?;
+    diagram.simplify();
+    Ok(diagram)
+}
+
+/// Jones polynomial of the closed polygon through `vertices`; `None` if its diagram has more than 60 crossings or is too
+/// wide for the bracket to be summed in bounded time.
+///
+/// # Errors
+/// As [`Invariants::of`].
+pub fn jones_polynomial(vertices: &[V]) -> Result<Option<Jones>, KnotError> {
+    Ok(jones::jones(&diagram(vertices)?))
 }
 
 /// Alexander polynomial of the closed polygon through `vertices`: symmetric coefficients, the first one positive.

@@ -22,7 +22,9 @@ pub use braid::{closed_braid, n_components};
 pub use error::KnotError;
 pub use ideal::ideal;
 pub use identify::{Handedness, KnotType, OpenKnotType, identify, identify_open};
-pub use invariant::{Invariants, alexander_polynomial, determinant, signature};
+pub use invariant::{
+    Invariants, Jones, alexander_polynomial, determinant, jones_polynomial, signature,
+};
 pub use moebius::relax_moebius;
 pub use start_file::StartCurve;
 pub use table::{Chirality, KnotEntry, KnotTable};

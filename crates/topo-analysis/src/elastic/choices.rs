@@ -37,7 +37,7 @@ impl Numbers {
     }
 }
 
-/// One knot name or a list; "all" stands for the whole table.
+/// One knot name or a list; "all" stands for the fourteen prime knots of up to seven crossings.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Names {

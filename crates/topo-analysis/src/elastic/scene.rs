@@ -18,7 +18,7 @@ use crate::timeline::TimelineSettings;
 pub struct ElasticScene {
     /// Folder of its tables below the output folder.
     pub folder: String,
-    /// Knot names; "all" stands for the whole table.
+    /// Knot names; "all" stands for the fourteen prime knots of up to seven crossings.
     pub knots: Vec<String>,
     /// θ'h of the cases; empty: no twist is modelled.
     pub twists: Vec<f64>,
@@ -105,7 +105,7 @@ impl ElasticScene {
         let mut names = Vec::new();
         for name in &self.knots {
             if name == "all" {
-                names.extend(table.names().map(str::to_owned));
+                names.extend(table.primes_up_to(7).map(|knot| knot.name.clone()));
             } else {
                 names.push(table.get(name)?.name.clone());
             }

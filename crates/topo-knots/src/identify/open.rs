@@ -4,8 +4,8 @@ use std::f64::consts::PI;
 
 use serde::{Deserialize, Serialize};
 
-use super::classify;
 use super::reduce::{Ray, Reducer};
+use super::{Care, classify};
 use crate::invariant::{check_vertices, fibonacci_directions};
 use crate::{KnotError, KnotTable, V};
 
@@ -101,7 +101,7 @@ fn close(
     // Not as a closed chain: ends that coincide must both stay, the far point lies between them.
     reducer.load(chain, false);
     reducer.x.push(point);
-    Ok(classify(reducer, table)?.label())
+    Ok(classify(reducer, table, Care::Name)?.label())
 }
 
 pub(super) fn far_points(vertices: &[V], n: usize, seed: u64) -> Vec<V> {

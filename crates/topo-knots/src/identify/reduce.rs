@@ -25,6 +25,9 @@ impl Ray {
     }
 }
 
+/// Distance, in units of the largest coordinate, below which an edge counts as touching a triangle: well above rounding, so that
+/// no strand is ever left so close to another that projections disagree on which one is above.
+const TOUCH: f64 = 1e-11;
 /// Fewest vertices of a knotted polygon.
 const LEAST_CLOSED: usize = 6;
 /// Marks a vertex that is gone.
@@ -40,6 +43,8 @@ pub(crate) struct Reducer {
     pub x: Vec<V>,
     boxes: EdgeBoxes,
     next: Vec<u32>,
+    /// Distance below which an edge counts as touching a triangle.
+    touch: f64,
     /// Triangles tested, for the tests of cost.
     pub n_triangles: usize,
 }
@@ -65,6 +70,7 @@ impl Reducer {
     pub fn reduce(&mut self, closed: bool, rays: &[Ray]) {
         let size = self.x.iter().map(|x| x.amax()).fold(0.0, f64::max);
         let pad = (1e-6 * size) as f32;
+        self.touch = TOUCH * size;
         let least = if closed { LEAST_CLOSED } else { 3 };
         let mut n_idle = 0;
         while self.x.len() >= least && n_idle < 2 {
@@ -142,6 +148,7 @@ impl Reducer {
             a: x[a],
             b: x[b],
             c: x[c],
+            touch: self.touch,
         };
         let bounds = Aabb::around(&[&triangle.a, &triangle.b, &triangle.c], pad);
         let hit = self.boxes.any(&bounds, |edge| {
@@ -176,6 +183,8 @@ struct Triangle {
     a: V,
     b: V,
     c: V,
+    /// How near counts as touching.
+    touch: f64,
 }
 
 impl Triangle {
@@ -185,18 +194,22 @@ impl Triangle {
         let d = q - p;
         let ab = d.dot(&a.cross(&b));
         let bc = d.dot(&b.cross(&c));
-        if ab > 0.0 && bc < 0.0 || ab < 0.0 && bc > 0.0 {
+        // Volumes of what is as thin as a touch.
+        let reach = a.amax().max(b.amax()).max(c.amax());
+        let thin = self.touch * d.amax() * reach;
+        if ab > thin && bc < -thin || ab < -thin && bc > thin {
             return false;
         }
         let ca = d.dot(&c.cross(&a));
-        let positive = ab > 0.0 || bc > 0.0 || ca > 0.0;
-        let negative = ab < 0.0 || bc < 0.0 || ca < 0.0;
+        let positive = ab > thin || bc > thin || ca > thin;
+        let negative = ab < -thin || bc < -thin || ca < -thin;
         if positive && negative {
             return false;
         }
         let normal = (self.b - self.a).cross(&(self.c - self.a));
         let (from, to) = (-a.dot(&normal), (q - self.a).dot(&normal));
-        !(from > 0.0 && to > 0.0 || from < 0.0 && to < 0.0)
+        let near = self.touch * normal.amax();
+        !(from > near && to > near || from < -near && to < -near)
     }
 }
 

@@ -1,7 +1,7 @@
 //! Identification against the table, and faults that it must catch.
 
 use super::*;
-use crate::closed_braid;
+use crate::{Chirality, closed_braid};
 
 fn braid(word: &[i32]) -> Vec<V> {
     closed_braid(word).expect("a knot").into_vertices()
@@ -16,10 +16,9 @@ fn names_the_table_and_its_mirrors() {
         assert_eq!(kind.invariants, knot.invariants);
         let mirror = identify(&braid(&knot.mirror().braid), &table).expect("a knot");
         assert_eq!(mirror.label(), knot.name);
-        let expected = match (knot.chirality, knot.invariants.signature) {
-            (Chirality::Amphichiral, _) => [Handedness::Amphichiral; 2],
-            (_, 0) => [Handedness::Undecided; 2],
-            _ => [Handedness::Tabulated, Handedness::Mirrored],
+        let expected = match knot.chirality {
+            Chirality::Amphichiral => [Handedness::Amphichiral; 2],
+            Chirality::Chiral => [Handedness::Tabulated, Handedness::Mirrored],
         };
         assert_eq!(
             [kind.handedness, mirror.handedness],
@@ -28,6 +27,49 @@ fn names_the_table_and_its_mirrors() {
             knot.name
         );
     }
+}
+
+/// The Jones polynomial tells these from their mirror images, and the second row from the first.
+#[test]
+fn jones_tells_what_the_signature_cannot() {
+    let table = KnotTable::builtin();
+    for name in ["6_1", "7_7", "8_1", "8_8", "8_13", "8_20"] {
+        let knot = table.get(name).expect(name);
+        assert_eq!(knot.invariants.signature, 0);
+        let kind = identify(&braid(&knot.mirror().braid), &table).expect("a knot");
+        assert_eq!(
+            kind.describe(),
+            format!("m{name}, the mirror image of {name}")
+        );
+    }
+    for (one, other) in [("8_21", "3_1#4_1"), ("8_20", "3_1#m3_1")] {
+        let [a, b] = [one, other].map(|name| table.get(name).expect(name));
+        assert_eq!(a.invariants, b.invariants);
+        for knot in [a, b] {
+            let kind = identify(&braid(&knot.braid), &table).expect("a knot");
+            assert_eq!(kind.label(), knot.name);
+        }
+    }
+}
+
+/// Without a Jones polynomial in the table, the two cannot be told apart, and that is said.
+#[test]
+fn what_fits_several_knots_is_called_ambiguous() {
+    let mut table = KnotTable::default();
+    for name in ["3_1", "4_1", "8_21"] {
+        let mut knot = KnotTable::builtin().get(name).expect(name).clone();
+        knot.jones = None;
+        table.insert(knot);
+    }
+    let word = KnotTable::builtin()
+        .get("8_21")
+        .expect("known")
+        .braid
+        .clone();
+    let kind = identify(&braid(&word), &table).expect("a knot");
+    assert_eq!(kind.label(), "8_21|3_1#4_1");
+    assert_eq!(kind.describe(), "ambiguous: 8_21 or 3_1#4_1");
+    assert!(!kind.is_certain());
 }
 
 #[test]
@@ -55,25 +97,73 @@ fn unknots_are_seen_through() {
 #[test]
 fn composite_knots_multiply() {
     let table = KnotTable::builtin();
-    for (word, expected) in [
-        (vec![1, 1, 1, 2, 2, 2], "3_1#3_1"),
-        (vec![1, 1, 1, -2, -2, -2], "3_1#m3_1"),
-        (vec![1, 1, 1, 2, -3, 2, -3], "3_1#4_1"),
+    for (word, expected, handedness) in [
+        (vec![1, 1, 1, 2, 2, 2], "3_1#3_1", Handedness::Tabulated),
+        (
+            vec![-1, -1, -1, -2, -2, -2],
+            "3_1#3_1",
+            Handedness::Mirrored,
+        ),
+        (
+            vec![1, 1, 1, -2, -2, -2],
+            "3_1#m3_1",
+            Handedness::Amphichiral,
+        ),
+        (
+            vec![1, 1, 1, 2, -3, 2, -3],
+            "3_1#4_1",
+            Handedness::Tabulated,
+        ),
+        (
+            vec![1, 1, 1, 1, 1, -2, -2, -2],
+            "3_1#m5_1",
+            Handedness::Mirrored,
+        ),
+        (
+            vec![1, -2, 1, -2, 3, -4, 3, -4],
+            "4_1#4_1",
+            Handedness::Amphichiral,
+        ),
+        (
+            vec![1, 1, 1, 2, 2, 2, -3, -3, -3],
+            "3_1#3_1#m3_1",
+            Handedness::Tabulated,
+        ),
     ] {
         let kind = identify(&braid(&word), &table).expect("a knot");
-        assert_eq!(kind.names, [expected]);
+        assert_eq!(kind.names, [expected], "{word:?}");
+        assert_eq!(kind.handedness, handedness, "{expected}");
+        assert_eq!(kind.is_certain(), kind.n_crossings <= 8);
     }
-    // 8_21 shares all three invariants with 3_1#4_1: a table that holds it must name it first.
-    let eight = identify(&braid(&[-1, -1, -1, -2, 1, 1, -2, -2]), &table).expect("a knot");
-    assert_eq!(eight.label(), "3_1#4_1");
 }
 
 #[test]
 fn knots_beyond_the_table_are_unknown() {
     let table = KnotTable::builtin();
-    let torus = identify(&braid(&[1, 2, 1, 2, 1, 2, 1, 2]), &table).expect("a knot");
-    assert_eq!(torus.label(), "unknown(1 -1 0 1 0 -1 1)");
-    assert_eq!(torus.invariants.signature, -6);
+    // The torus knot T(3, 7).
+    let torus = identify(&braid(&[1, 2].repeat(7)), &table).expect("a knot");
+    assert!(torus.label().starts_with("unknown(1 -1 0 1"), "{torus:?}");
+    assert_eq!(torus.invariants.signature, -8);
+    assert!(torus.describe().contains("Jones polynomial t^6 + t^8"));
+    // 9_2 shares its Alexander polynomial and signature with 7_4; its Jones polynomial tells.
+    let nine = identify(&braid(&[1, 1, 1, 2, -1, 2, 3, -2, 3, 4, -3, 4]), &table);
+    let nine = nine.expect("a knot");
+    assert_eq!(nine.invariants, table.get("7_4").expect("known").invariants);
+    assert_eq!(nine.label(), "unknown(4 -7 4)");
+    // 10_132 shares all of them with 5_1 but the signature; no name is wrong.
+    let ten = identify(&braid(&[1, 1, 1, -2, -1, -1, -2, -3, 2, -3, -3]), &table);
+    assert!(!ten.expect("a knot").names.contains(&"5_1".to_owned()));
+}
+
+/// The Kinoshita-Terasaka knot has the Alexander polynomial of the unknot.
+#[test]
+fn a_trivial_alexander_polynomial_is_not_enough() {
+    let table = KnotTable::builtin();
+    let word = [-1, -1, -1, -1, 2, 2, 1, -3, 2, 2, -3, 2, -3];
+    let kind = identify(&braid(&word), &table).expect("a knot");
+    assert_eq!(kind.invariants.alexander, [1]);
+    assert!(!kind.is_unknot() && kind.names.is_empty(), "{kind:?}");
+    assert!(kind.jones.is_some_and(|jones| jones != Jones::one()));
 }
 
 #[test]

@@ -81,6 +81,8 @@ impl Projector {
         self.points
             .extend(vertices.iter().map(|x| [x.dot(&u), x.dot(&v), x.dot(&w)]));
         self.points.push(self.points[0]);
+        let size = vertices.iter().map(|x| x.amax()).fold(0.0, f64::max);
+        let touch = TOUCH * size;
         self.crossings.clear();
         let n = vertices.len();
         for i in 0..n {
@@ -97,7 +99,7 @@ impl Projector {
                 {
                     continue;
                 }
-                match cross(a, b, c, d) {
+                match cross(a, b, c, d, touch) {
                     Meeting::Apart => {}
                     Meeting::Degenerate => return false,
                     Meeting::Crossing { s, t, turn, height } => {
@@ -163,8 +165,11 @@ enum Meeting {
     },
 }
 
+/// Height, in units of the largest coordinate, below which two strands touch: rounding could put either above the other.
+const TOUCH: f64 = 1e-13;
+
 /// How two projected edges meet; heights are the third coordinates.
-fn cross(a: [f64; 3], b: [f64; 3], c: [f64; 3], d: [f64; 3]) -> Meeting {
+fn cross(a: [f64; 3], b: [f64; 3], c: [f64; 3], d: [f64; 3], touch: f64) -> Meeting {
     let e = [b[0] - a[0], b[1] - a[1]];
     let f = [d[0] - c[0], d[1] - c[1]];
     let g = [c[0] - a[0], c[1] - a[1]];
@@ -192,7 +197,7 @@ fn cross(a: [f64; 3], b: [f64; 3], c: [f64; 3], d: [f64; 3]) -> Meeting {
     }
     let (s, t) = (s_signed / size, t_signed / size);
     let height = (a[2] + s * (b[2] - a[2])) - (c[2] + t * (d[2] - c[2]));
-    if height == 0.0 {
+    if height.abs() <= touch {
         return Meeting::Degenerate;
     }
     Meeting::Crossing { s, t, turn, height }

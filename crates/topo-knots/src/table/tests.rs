@@ -1,31 +1,72 @@
 //! The table against its own coordinates, and faults in knot files.
 
 use super::*;
-use crate::{thickness, thickness_brute_force, windowed_half_distance};
+use crate::{closed_braid, thickness, thickness_brute_force, windowed_half_distance};
 
 #[test]
 fn builtin_table_is_complete() {
     let table = KnotTable::builtin();
     let names: Vec<&str> = table.names().collect();
-    assert_eq!(
-        names,
-        [
-            "3_1", "4_1", "5_1", "5_2", "6_1", "6_2", "6_3", "7_1", "7_2", "7_3", "7_4", "7_5",
-            "7_6", "7_7"
-        ]
-    );
+    let mut expected = Vec::new();
+    for (crossings, n) in [(3, 1), (4, 1), (5, 2), (6, 3), (7, 7), (8, 21)] {
+        expected.extend((1..=n).map(|k| format!("{crossings}_{k}")));
+    }
+    expected.extend(["10_124", "3_1#3_1", "3_1#m3_1", "3_1#4_1"].map(str::to_owned));
+    assert_eq!(names, expected);
     assert_eq!(
         BUILTIN.files().filter(|f| is_toml(f.path())).count(),
         table.len()
     );
     for knot in table.iter() {
-        assert!(
-            knot.length_over_radius.is_some() && knot.source.is_some(),
-            "{}",
-            knot.name
+        assert_eq!(knot.length_over_radius.is_none(), knot.is_composite());
+        assert_eq!(knot.source.is_some(), knot.length_over_radius.is_some());
+        let crossings = |factor: &str| -> u32 {
+            let (n, _) = factor.trim_start_matches('m').split_once('_').expect("n_k");
+            n.parse().expect("a number")
+        };
+        assert_eq!(
+            knot.name.split('#').map(crossings).sum::<u32>(),
+            knot.crossing_number
         );
-        assert!(
-            knot.name.starts_with(&knot.crossing_number.to_string()),
+    }
+    assert_eq!(table.primes_up_to(7).count(), 14);
+    assert_eq!(table.complete_up_to(), 8);
+    assert_eq!(KnotTable::default().complete_up_to(), 2);
+}
+
+#[test]
+fn aliases_and_mirrors_are_found() {
+    let table = KnotTable::builtin();
+    for (alias, name) in [
+        ("granny", "3_1#3_1"),
+        ("square", "3_1#m3_1"),
+        ("T(3,4)", "8_19"),
+        ("T(3,5)", "10_124"),
+        ("m3_1#m4_1", "m3_1#m4_1"),
+        ("mgranny", "m3_1#m3_1"),
+    ] {
+        assert_eq!(table.get(alias).expect(alias).name, name);
+    }
+    // A torus knot is the closure of (1 2 .. p-1)^q.
+    for (name, p, q) in [("T(3,4)", 3, 4), ("T(3,5)", 3, 5), ("T(2,7)", 2, 7)] {
+        let word = (1..p).collect::<Vec<i32>>().repeat(q);
+        let curve = closed_braid(&word).expect("a knot");
+        table.get(name).expect(name).verify(&curve).expect(name);
+    }
+}
+
+#[test]
+fn jones_polynomials_of_the_table() {
+    for knot in KnotTable::builtin().iter() {
+        for knot in [knot.clone(), knot.mirror()] {
+            let curve = closed_braid(&knot.braid).expect("a knot");
+            let found = crate::jones_polynomial(curve.vertices()).expect("a knot");
+            assert_eq!(found, knot.jones, "{}", knot.name);
+        }
+        let jones = knot.jones.as_ref().expect("narrow");
+        assert_eq!(
+            *jones == jones.mirror(),
+            knot.chirality == Chirality::Amphichiral,
             "{}",
             knot.name
         );
@@ -93,6 +134,11 @@ fn files_with_faults_are_named() {
         ("determinant = 3", "determinant = 5", "determinant"),
         ("[1, -1, 1]", "[1, -1, 2]", "alexander"),
         ("signature = -2", "signature = 1", "signature"),
+        (
+            "signature = -2",
+            "signature = -2\njones = { lowest = 1, coefficients = [1, 1, -1] }",
+            "jones",
+        ),
         ("[1, 1, 1]", "[1, 1]", "braid"),
         ("[1, 1, 1]", "[]", "braid"),
         ("\"chiral\"", "\"amphichiral\"", "chirality"),

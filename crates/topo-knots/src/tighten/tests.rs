@@ -21,7 +21,7 @@ const WRITHE: [(&str, f64); 8] = [
 
 fn check_all(settings: &TightenSettings, excess_limit: f64, writhe_limit: f64) {
     let table = KnotTable::builtin();
-    let knots: Vec<&KnotEntry> = table.iter().collect();
+    let knots: Vec<&KnotEntry> = table.primes_up_to(7).collect();
     let tight: BTreeMap<String, TightKnot> = knots
         .par_iter()
         .map(|knot| {

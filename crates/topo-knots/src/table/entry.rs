@@ -1,0 +1,289 @@
+//! One knot of the table, read from its TOML file and checked on the way.
+
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+use topo_core::Polyline;
+
+use crate::braid::check_word;
+use crate::start_file::StartCurve;
+use crate::{Invariants, Jones, KnotError, closed_braid, jones_polynomial};
+
+/// Whether a knot differs from its mirror image.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Chirality {
+    /// The mirror image is another knot.
+    Chiral,
+    /// The mirror image is the same knot.
+    Amphichiral,
+}
+
+/// One knot type of the table.
+///
+/// # Validation
+/// `invariants_of_the_table`, `jones_polynomials_of_the_table`, `files_with_faults_are_named`.
+///
+/// # References
+/// `livingston2026`, `ashton2011`
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct KnotEntry {
+    /// Name as in Rolfsen's table; mirror images carry a leading `m`.
+    pub name: String,
+    /// Braid word whose closure is the knot; may be empty if a start curve is given.
+    pub braid: Vec<i32>,
+    /// Further words of the same knot, from whose closures tightening starts too.
+    pub other_braids: Vec<Vec<i32>>,
+    /// Least number of crossings of a diagram.
+    pub crossing_number: u32,
+    /// Whether the mirror image is another knot.
+    pub chirality: Chirality,
+    /// Alexander polynomial, determinant and signature.
+    pub invariants: Invariants,
+    /// Jones polynomial; `None` if the file gives none and the knot's own diagram is too wide for it.
+    #[serde(skip)]
+    pub jones: Option<Jones>,
+    /// Other names of the knot, such as `T(3,4)` or `granny`.
+    #[serde(skip)]
+    pub aliases: Vec<String>,
+    /// Published length of the tight knot in units of the tube radius; `None` where none is published.
+    pub length_over_radius: Option<f64>,
+    /// Key of the publication of the length.
+    pub source: Option<String>,
+    /// A start curve instead of, or beside, the closed braid.
+    pub start: Option<StartCurve>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    name: String,
+    #[serde(default)]
+    aliases: Vec<String>,
+    crossing_number: u32,
+    chirality: Chirality,
+    #[serde(default)]
+    braid: Vec<i32>,
+    #[serde(default)]
+    other_braids: Vec<Vec<i32>>,
+    polygon: Option<PathBuf>,
+    fourier: Option<PathBuf>,
+    invariants: FileInvariants,
+    reference: Option<FileReference>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct FileInvariants {
+    alexander: Vec<i64>,
+    determinant: u64,
+    signature: i32,
+    jones: Option<Jones>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct FileReference {
+    length_over_radius: f64,
+    source: String,
+}
+
+impl KnotEntry {
+    /// Reads an entry; `load` opens files named in it, relative to the entry's own folder.
+    pub(super) fn parse(
+        path: &Path,
+        text: &str,
+        load: &dyn Fn(&Path) -> Result<String, KnotError>,
+    ) -> Result<Self, KnotError> {
+        let fault = |problem: String| KnotError::Table {
+            path: path.to_owned(),
+            problem,
+        };
+        let file: File = toml::from_str(text).map_err(|e| fault(e.to_string()))?;
+        let FileInvariants {
+            alexander,
+            determinant,
+            signature,
+            jones,
+        } = file.invariants;
+        if path
+            .file_stem()
+            .is_none_or(|stem| stem != file.name.as_str())
+        {
+            return Err(fault(format!(
+                "`name` is `{}`; it must equal the file's name",
+                file.name
+            )));
+        }
+        let at_minus_one: i64 = alexander
+            .iter()
+            .enumerate()
+            .map(|(k, c)| if k % 2 == 0 { *c } else { -*c })
+            .sum();
+        if alexander.iter().ne(alexander.iter().rev())
+            || alexander.first().is_none_or(|c| *c <= 0)
+            || alexander.iter().sum::<i64>().abs() != 1
+        {
+            return Err(fault(format!(
+                "`invariants.alexander` = {alexander:?} is not a knot's: give all coefficients, symmetric, the first positive, with sum 1 or -1"
+            )));
+        }
+        if at_minus_one.unsigned_abs() != determinant {
+            return Err(fault(format!(
+                "`invariants.determinant` = {determinant} is not |Delta(-1)| = {} of `alexander`",
+                at_minus_one.abs()
+            )));
+        }
+        if signature % 2 != 0 {
+            return Err(fault(format!(
+                "`invariants.signature` = {signature} is odd; a knot's is even"
+            )));
+        }
+        if file.chirality == Chirality::Amphichiral && signature != 0 {
+            return Err(fault(format!(
+                "`invariants.signature` = {signature} contradicts `chirality` = \"amphichiral\"; it must be 0"
+            )));
+        }
+        if let Some(jones) = &jones
+            && !jones.fits_a_knot(determinant)
+        {
+            return Err(fault(format!(
+                "`invariants.jones` = {} is not a knot's of determinant {determinant}: V(1) = 1, V'(1) = 0 and |V(-1)| = determinant must hold",
+                jones.text()
+            )));
+        }
+        if file.name.is_empty() || file.name.contains(['/', '\\', '|', ' ']) {
+            return Err(fault(format!(
+                "`name` = `{}` must have no blank, bar or slash",
+                file.name
+            )));
+        }
+        if let Some(reference) = &file.reference
+            && !(reference.length_over_radius.is_finite() && reference.length_over_radius > 0.0)
+        {
+            return Err(fault(format!(
+                "`reference.length_over_radius` = {} must be positive",
+                reference.length_over_radius
+            )));
+        }
+        if !file.braid.is_empty() {
+            check_word(&file.braid)
+                .map_err(|e| fault(format!("`braid` = {:?}: {e}", file.braid)))?;
+        }
+        for word in &file.other_braids {
+            check_word(word).map_err(|e| fault(format!("`other_braids`: {word:?}: {e}")))?;
+        }
+        let start = match (&file.polygon, &file.fourier) {
+            (Some(_), Some(_)) => {
+                return Err(fault("give `polygon` or `fourier`, not both".to_owned()));
+            }
+            (Some(name), None) => Some(StartCurve::polygon(name, &load(name)?)?),
+            (None, Some(name)) => Some(StartCurve::fourier(name, &load(name)?)?),
+            (None, None) if file.braid.is_empty() => {
+                return Err(fault(
+                    "give a `braid` word, a `polygon` or a `fourier` file".to_owned(),
+                ));
+            }
+            (None, None) => None,
+        };
+        let (length_over_radius, source) = match file.reference {
+            Some(reference) => (Some(reference.length_over_radius), Some(reference.source)),
+            None => (None, None),
+        };
+        let mut entry = Self {
+            name: file.name,
+            aliases: file.aliases,
+            jones,
+            braid: file.braid,
+            other_braids: file.other_braids,
+            crossing_number: file.crossing_number,
+            chirality: file.chirality,
+            invariants: Invariants {
+                alexander,
+                determinant,
+                signature,
+            },
+            length_over_radius,
+            source,
+            start,
+        };
+        if entry.jones.is_none() {
+            entry.jones = jones_polynomial(entry.start_curve()?.vertices())?;
+        }
+        Ok(entry)
+    }
+
+    /// Whether the knot is a sum of others, such as `3_1#4_1`.
+    pub fn is_composite(&self) -> bool {
+        self.name.contains('#')
+    }
+
+    /// The entry of the mirror image: negated word and signature, a leading `m` added to or removed from each factor's name.
+    pub fn mirror(&self) -> Self {
+        let name = self
+            .name
+            .split('#')
+            .map(|factor| match factor.strip_prefix('m') {
+                Some(rest) => rest.to_owned(),
+                None => format!("m{factor}"),
+            })
+            .collect::<Vec<_>>()
+            .join("#");
+        Self {
+            name,
+            braid: negated(&self.braid),
+            other_braids: self.other_braids.iter().map(|word| negated(word)).collect(),
+            invariants: self.invariants.mirror(),
+            jones: self.jones.as_ref().map(Jones::mirror),
+            aliases: self.aliases.iter().map(|name| format!("m{name}")).collect(),
+            start: self.start.as_ref().map(StartCurve::mirror),
+            ..self.clone()
+        }
+    }
+
+    /// A curve of this knot type to start tightening from: the given start curve, else the closed braid.
+    ///
+    /// # Errors
+    /// Those of [`closed_braid`] and of the geometry.
+    pub fn start_curve(&self) -> Result<Polyline, KnotError> {
+        match &self.start {
+            Some(start) => start.curve(),
+            None => closed_braid(&self.braid),
+        }
+    }
+
+    /// Compares the invariants of a curve with those of the entry.
+    ///
+    /// # Errors
+    /// [`KnotError::Mismatch`] naming the invariant, and those of [`Invariants::of`].
+    pub fn verify(&self, curve: &Polyline) -> Result<Invariants, KnotError> {
+        let found = Invariants::of(curve.vertices())?;
+        let mismatch = |what, expected: String, found: String| KnotError::Mismatch {
+            knot: self.name.clone(),
+            what,
+            expected,
+            found,
+        };
+        let expected = &self.invariants;
+        if found.alexander != expected.alexander {
+            return Err(mismatch(
+                "alexander",
+                expected.alexander_text(),
+                found.alexander_text(),
+            ));
+        }
+        if found.signature != expected.signature {
+            return Err(mismatch(
+                "signature",
+                expected.signature.to_string(),
+                found.signature.to_string(),
+            ));
+        }
+        Ok(found)
+    }
+}
+
+fn negated(word: &[i32]) -> Vec<i32> {
+    word.iter().map(|g| -g).collect()
+}
