@@ -5,7 +5,7 @@ mod elastic_configurations;
 mod elastic_discharge;
 mod knots_table;
 mod nematic;
-mod series;
+pub mod series;
 #[cfg(test)]
 mod tests;
 
@@ -13,6 +13,7 @@ pub use nematic::profile_scale;
 
 use crate::data::{self, Sweep};
 use crate::error::XtaskError;
+use crate::movies::{self, Movie};
 use crate::plot::canvas::{self, Picture};
 use clap::ValueEnum;
 use serde::Serialize;
@@ -102,20 +103,26 @@ pub struct Done {
     pub seconds: f64,
 }
 
-/// The figures that `--only` names, or all.
-pub fn chosen(only: &[String]) -> Result<Vec<Figure>, XtaskError> {
-    let known = || ALL.map(|f| f.name).join(", ");
+/// The figures and movies that `--only` names, or all.
+pub fn chosen(only: &[String]) -> Result<(Vec<Figure>, Vec<Movie>), XtaskError> {
+    let names = || {
+        let movies = movies::ALL.iter().map(|m| m.name);
+        ALL.iter().map(|f| f.name).chain(movies)
+    };
     for name in only {
-        if !ALL.iter().any(|f| f.name == name) {
+        if !names().any(|n| n == name) {
+            let known: Vec<&str> = names().collect();
             return Err(XtaskError::Argument {
                 key: "--only",
                 value: name.clone(),
-                remedy: format!("no such figure; the figures are {}", known()),
+                remedy: format!("no such figure; the figures are {}", known.join(", ")),
             });
         }
     }
-    let wanted = |f: &&Figure| only.is_empty() || only.iter().any(|n| n == f.name);
-    Ok(ALL.iter().filter(wanted).copied().collect())
+    let wanted = |name: &str| only.is_empty() || only.iter().any(|n| n == name);
+    let figures = ALL.iter().filter(|f| wanted(f.name));
+    let movies = movies::ALL.iter().filter(|m| wanted(m.name));
+    Ok((figures.copied().collect(), movies.copied().collect()))
 }
 
 /// Draws a figure and writes `figures/NAME.{svg,png,csv}`.

@@ -3,6 +3,7 @@
 use crate::data;
 use crate::error::XtaskError;
 use crate::figures::{Done, Quality};
+use crate::movies::Movie;
 use crate::plot::font;
 use crate::plot::text::escape;
 use crate::provenance::Provenance;
@@ -25,17 +26,24 @@ dl{background:var(--card);border-radius:6px;padding:.8rem 1rem;margin:1rem 0}dt{
 pub fn write(
     results: &Path,
     done: &[&Done],
+    movies: &[(Movie, String)],
     quality: Quality,
     provenance: &Provenance,
 ) -> Result<(), XtaskError> {
     let view = viewer::sections(results)?;
     data::write(
         &results.join("index.html"),
-        page(done, &view, quality, provenance).as_bytes(),
+        page(done, movies, &view, quality, provenance).as_bytes(),
     )
 }
 
-fn page(done: &[&Done], view: &str, quality: Quality, provenance: &Provenance) -> String {
+fn page(
+    done: &[&Done],
+    movies: &[(Movie, String)],
+    view: &str,
+    quality: Quality,
+    provenance: &Provenance,
+) -> String {
     let mut html = format!(
         "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\
          <meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\
@@ -64,6 +72,12 @@ fn page(done: &[&Done], view: &str, quality: Quality, provenance: &Provenance) -
             ),
         );
     }
+    for (m, _) in movies {
+        add(
+            &mut html,
+            format_args!("<a href=\"#{0}\">{1}</a> ", m.name, escape(m.title)),
+        );
+    }
     html.push_str("<a href=\"#provenance\">Provenance</a></nav>\n");
     for d in done {
         let f = &d.figure;
@@ -83,6 +97,22 @@ fn page(done: &[&Done], view: &str, quality: Quality, provenance: &Provenance) -
                 claim = escape(f.claim),
                 finding = escape(&d.finding),
                 table = f.table,
+            ),
+        );
+    }
+    for (m, finding) in movies {
+        add(
+            &mut html,
+            format_args!(
+                "<section id=\"{name}\"><h2>{title}</h2><img alt=\"{alt}\" loading=\"lazy\" src=\"figures/{name}.png\">\
+                 <p>{caption}</p><dl><dt>Published claim</dt><dd>{claim}</dd><dt>Found here</dt><dd>{finding}</dd></dl>\
+                 <p class=\"files\">File: <a href=\"figures/{name}.png\">animated PNG</a></p></section>\n",
+                name = m.name,
+                title = escape(m.title),
+                alt = escape(m.caption),
+                caption = escape(m.caption),
+                claim = escape(m.claim),
+                finding = escape(finding),
             ),
         );
     }

@@ -8,6 +8,7 @@ mod error;
 mod figures;
 mod gallery;
 mod interrupt;
+mod movies;
 mod plot;
 mod progress;
 mod provenance;

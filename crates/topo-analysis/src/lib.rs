@@ -18,8 +18,9 @@ mod times;
 
 pub use elastic::{
     ACCURACY_CASES, AccuracyRow, Cuts, ElasticCase, ElasticScene, Ensemble, NEAR_TIE, Names,
-    Numbers, Preset, RESULTS_VERSION, Regime, Resonance, SweepReport, crossover, ensembles,
-    measure_accuracy, perturbed, reference_scene, regime, resonances, run_sweep,
+    Numbers, Preset, RESULTS_VERSION, Regime, Resonance, ShapeFrame, SweepReport, crossover,
+    discharge_frames, ensembles, measure_accuracy, perturbed, reference_scene, regime, resonances,
+    run_sweep,
 };
 pub use error::AnalysisError;
 pub use folder::writable;

@@ -177,7 +177,7 @@
         if (on && focus) b.focus();
       });
       told.textContent = d.knots[i] + ', θ′h = ' + d.twists[j] + ', E = ' + c.energy + ' E₀' + (c.t99 ? ', t₉₉ = ' + c.t99 + ' T₀' : '');
-      stage.look(3.4 * c.extent, 0);
+      stage.look(4.2 * c.extent, 0);
       line.reset(c.times.length);
       box.dataset.state = i + ',' + j;
     }

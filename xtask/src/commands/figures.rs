@@ -7,11 +7,13 @@ use crate::error::XtaskError;
 use crate::figures::{self, Context, Done};
 use crate::gallery;
 use crate::interrupt;
+use crate::movies::{self, Movie};
 use crate::progress::Progress;
 use crate::provenance::{self, Provenance, workspace};
+use std::time::Instant;
 
 pub fn run(args: &FiguresArgs) -> Result<(), XtaskError> {
-    let chosen = figures::chosen(&args.only)?;
+    let (chosen, movies) = figures::chosen(&args.only)?;
     let jobs = super::threads(args.work.jobs)?;
     let interrupt = interrupt::install();
     let results = args.work.out.as_path();
@@ -41,6 +43,24 @@ pub fn run(args: &FiguresArgs) -> Result<(), XtaskError> {
     }
     progress.finish();
     let n_drawn = done.len();
+    let mut shown_movies: Vec<(Movie, String)> = Vec::new();
+    for movie in movies {
+        let progress = Progress::start(movie.name, movies::N_FRAMES);
+        let start = Instant::now();
+        let stage = movies::Stage {
+            results,
+            quality: args.quality,
+            interrupt: &interrupt,
+            progress: &progress,
+        };
+        let finding = movies::draw(movie, &stage)?;
+        progress.finish();
+        println!("{}: {finding}", movie.name);
+        record
+            .wall_seconds
+            .insert(movie.name.to_owned(), start.elapsed().as_secs_f64());
+        shown_movies.push((movie, finding));
+    }
     let mut earlier = provenance::earlier_findings(results);
     // The gallery keeps what earlier commands drew.
     for figure in figures::ALL {
@@ -50,17 +70,30 @@ pub fn run(args: &FiguresArgs) -> Result<(), XtaskError> {
             done.extend(figures::kept(figure, results, finding));
         }
     }
+    for movie in movies::ALL {
+        let there = results.join(format!("figures/{}.png", movie.name)).exists();
+        if shown_movies.iter().all(|(m, _)| m.name != movie.name)
+            && let Some(finding) = earlier.remove(movie.name).filter(|_| there)
+        {
+            shown_movies.push((movie, finding));
+        }
+    }
     let place = |d: &Done| figures::ALL.iter().position(|f| f.name == d.figure.name);
     let mut shown: Vec<&Done> = done.iter().collect();
     shown.sort_by_key(|d| place(d));
     record.drew(&done);
+    for (movie, finding) in &shown_movies {
+        record
+            .findings
+            .insert(movie.name.to_owned(), finding.clone());
+    }
     if order.elastic {
         for case in &Sweep::read(results)?.cases {
             case.cuts.iter().for_each(|c| record.warn(&c.warnings));
         }
     }
     record.write(results)?;
-    gallery::write(results, &shown, args.quality, &record)?;
+    gallery::write(results, &shown, &shown_movies, args.quality, &record)?;
     for d in &done[..n_drawn] {
         println!("{}: {}", d.figure.name, d.finding);
     }

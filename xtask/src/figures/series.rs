@@ -32,6 +32,18 @@ pub fn line(points: Vec<(f64, f64)>, color: &str, width: f64) -> Plot {
     )
 }
 
+/// A line through points of the canvas.
+pub fn line_path(canvas: &mut Canvas, points: &[[f64; 2]], color: &str, width: f64) {
+    let mut path = String::new();
+    for [x, y] in points {
+        // Writing to a string cannot fail.
+        let _ = write!(path, "{x:.2},{y:.2} ");
+    }
+    canvas.raw(&format!(
+        r#"<polyline points="{path}" fill="none" stroke="{color}" stroke-width="{width}" stroke-linejoin="round"/>"#
+    ));
+}
+
 /// Smallest and largest of finite values, or (0, 1) when there are none.
 pub fn bounds(values: impl IntoIterator<Item = f64>) -> (f64, f64) {
     let finite = values.into_iter().filter(|v| v.is_finite());

@@ -55,6 +55,7 @@ fn every_figure_is_drawn_with_its_files_and_told_in_the_gallery() {
     gallery::write(
         dir.path(),
         &done.iter().collect::<Vec<_>>(),
+        &[],
         Quality::Draft,
         &p,
     )
@@ -127,7 +128,10 @@ fn missing_results_and_unknown_names_are_told() {
     assert!(e.to_string().contains("sweep.csv"));
     let e = chosen(&["elastic-discharging".to_owned()]).unwrap_err();
     assert!(e.to_string().contains("elastic-discharge,") && e.exit_code() == 2);
-    assert_eq!(chosen(&["knots-table".to_owned()]).unwrap().len(), 1);
+    let (figures, movies) = chosen(&["knots-table".to_owned()]).unwrap();
+    assert_eq!((figures.len(), movies.len()), (1, 0));
+    let (figures, movies) = chosen(&["movie-elastic".to_owned()]).unwrap();
+    assert_eq!((figures.len(), movies.len()), (0, 1));
 }
 
 /// Draws made-up results at full detail into the folder that `TOPO_LOOK` names.
@@ -154,6 +158,7 @@ fn look() {
     gallery::write(
         results,
         &done.iter().collect::<Vec<_>>(),
+        &[],
         Quality::Draft,
         &p,
     )

@@ -214,29 +214,33 @@ impl Canvas {
         self.body.push('\n');
     }
 
-    /// The SVG with its fonts, and the PNG.
-    pub fn finish(self) -> Result<Picture, XtaskError> {
+    /// The SVG text with something between its head and what was drawn.
+    fn svg(&self, before: &str) -> String {
         let Self {
             width,
             height,
-            zoom,
             body,
             ..
         } = self;
-        let head = format!(
+        format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
-             viewBox=\"0 0 {width} {height}\" font-family=\"{}, Arial, sans-serif\">\n",
+             viewBox=\"0 0 {width} {height}\" font-family=\"{}, Arial, sans-serif\">\n\
+             {before}<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n{body}</svg>\n",
             font::FAMILY
-        );
-        let ground = r##"<rect width="100%" height="100%" fill="#ffffff"/>"##;
-        let drawn = format!("{head}{ground}\n{body}</svg>\n");
-        let pixels = render::pixels(&drawn, zoom as f32)?;
+        )
+    }
+
+    /// The pixels alone.
+    pub fn pixels(&self) -> Result<resvg::tiny_skia::Pixmap, XtaskError> {
+        render::pixels(&self.svg(""), self.zoom as f32)
+    }
+
+    /// The SVG with its fonts, and the PNG.
+    pub fn finish(self) -> Result<Picture, XtaskError> {
+        let pixels = self.pixels()?;
         let preview = render::png(&render::halved(&pixels)?)?;
         let png = render::png(&pixels)?;
-        let svg = format!(
-            "{head}<style>{}</style>{ground}\n{body}</svg>\n",
-            font::style()
-        );
+        let svg = self.svg(&format!("<style>{}</style>", font::style()));
         Ok(Picture { svg, png, preview })
     }
 }

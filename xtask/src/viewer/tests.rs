@@ -62,7 +62,7 @@ fn page(folder: &Path) -> PathBuf {
     };
     let done = figures::draw(figures::ALL[0], &context).unwrap();
     let p = provenance::Provenance::collect(&provenance::workspace(), Quality::Draft);
-    gallery::write(folder, &[&done], Quality::Draft, &p).unwrap();
+    gallery::write(folder, &[&done], &[], Quality::Draft, &p).unwrap();
     let text = std::fs::read_to_string(folder.join("index.html")).unwrap();
     assert!(!text.contains("src=\"http") && !text.contains("href=\"http"));
     let probed = folder.join("probed.html");
