@@ -7,7 +7,7 @@ mod ros2w;
 pub(crate) mod testing;
 
 pub use fire::{Fire, ForceFn, Relaxation, RelaxationEnd, Relaxed};
-pub use rkc2::Rkc2;
+pub use rkc2::{Rkc2, Rkc2Stage, Rkc2Stages};
 pub use ros2w::{GAMMA_L_STABLE_LARGE, GAMMA_L_STABLE_SMALL, Ros2w};
 
 use serde::{Deserialize, Serialize};

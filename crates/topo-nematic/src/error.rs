@@ -99,6 +99,20 @@ pub enum NematicError {
         /// Index of the cell.
         cell: usize,
     },
+    /// Values were given for a face that is none.
+    #[error("axis {axis} is periodic and has no outer faces: use walls at the sides")]
+    PeriodicFace {
+        /// 0, 1, 2 for x, y, z.
+        axis: usize,
+    },
+    /// The relaxation left all bounds.
+    #[error(
+        "the field is no longer finite after {step} steps: use a smaller spacing or less extreme constants"
+    )]
+    Diverged {
+        /// Steps taken.
+        step: u64,
+    },
     /// A checkpoint could not be written or read.
     #[error(transparent)]
     File(#[from] FileError),

@@ -2,20 +2,51 @@
 //!
 //! Units are reduced: lengths in the nematic correlation length xi_N, energies in L xi_N, times in tau_N.
 
+mod anchoring;
+mod battery;
+mod boundary;
+mod domain;
+mod energy;
 mod error;
 mod fft;
 mod flow;
 mod grid;
+mod kernel;
 mod material;
+mod memory;
+mod model;
+mod order;
+mod parameters;
 mod particle;
+mod real;
+mod relax;
+mod ring;
+mod stabilised;
+mod state;
 mod stokes;
 mod tensor;
 
+pub use anchoring::{Anchoring, DirectorTable, Plate, PlateDirector, SurfacePattern};
+pub use battery::NematicBattery;
+pub use battery::charge::{ChargeSettings, ChargedNematic};
+pub use battery::discharge::{Discharge, DischargeSettings};
+pub use battery::hooks::{Phase, Progress, RunHooks};
+pub use battery::record::{ChargeReport, NematicSample, PhaseReport, RunRecord};
+pub use battery::switch::{SwitchSettings, SwitchTarget, SwitchedNematic};
+pub use boundary::{Boundary, FreeSurface};
+pub use energy::EnergyParts;
 pub use error::NematicError;
 pub use flow::{FlowCounters, FlowCoupling, FlowParameters, Stored};
 pub use grid::{Faces, Grid, GridError};
+pub use kernel::run::Threads;
 pub use material::Material;
+pub use memory::{ByteAccount, MemoryEstimate, estimate};
+pub use order::{OrderParameter, order_parameter};
+pub use parameters::{ExternalField, NematicAccuracy, NematicParameters, Sides};
 pub use particle::Particle;
+pub use real::Precision;
+pub use ring::{Ring, ring};
+pub use state::NematicState;
 pub use stokes::{
     Drive, FaceSites, MacField, NoSlip, NoSlipReport, Spectral, StokesError, StokesSolver,
 };

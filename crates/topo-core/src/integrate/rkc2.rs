@@ -96,7 +96,7 @@ fn stages_for(dt_radius: f64) -> f64 {
 }
 
 /// Value, first and second derivative of a Chebyshev polynomial at w0.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 struct Chebyshev {
     t: f64,
     dt: f64,
@@ -132,6 +132,93 @@ impl Chebyshev {
     }
 }
 
+/// Factors of one stage: displacements and rates (times the step) that make up the next displacement.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rkc2Stage {
+    /// Of the last displacement, mu.
+    pub on_last: f64,
+    /// Of the one before, nu.
+    pub on_before: f64,
+    /// Of the rate at the last one.
+    pub on_rate: f64,
+    /// Of the rate at the start of the step.
+    pub on_start_rate: f64,
+}
+
+/// The coefficients of [`Rkc2`], stage by stage, for a model that fuses its rate with their use.
+///
+/// The displacement after the first stage is [`first`](Self::first) times the step times the rate; each further stage follows from
+/// [`next_stage`](Self::next_stage), n - 1 times. The error estimate is 0.4 dt (F_0 + F_1) - 0.8 (u_1 - u_0).
+#[derive(Clone, Copy, Debug)]
+pub struct Rkc2Stages {
+    w0: f64,
+    w1: f64,
+    b2: f64,
+    before: Chebyshev,
+    here: Chebyshev,
+    b_before: f64,
+    b_here: f64,
+}
+
+impl Rkc2Stages {
+    /// Coefficients of a step of `n_stages` (2 at least) stages.
+    pub fn new(n_stages: usize) -> Self {
+        let n_stages = n_stages.max(2);
+        let s = n_stages as f64;
+        let w0 = 1.0 + DAMPING / (s * s);
+        let (mut before, mut here) = (Chebyshev::ZERO, Chebyshev::one(w0));
+        for _ in 1..n_stages {
+            (before, here) = (here, here.next(before, w0));
+        }
+        let w1 = here.dt / here.ddt;
+        // b_0 = b_1 = b_2.
+        let (before, here) = (Chebyshev::ZERO, Chebyshev::one(w0));
+        let b2 = here.next(before, w0).b();
+        Self {
+            w0,
+            w1,
+            b2,
+            before,
+            here,
+            b_before: b2,
+            b_here: b2,
+        }
+    }
+
+    /// Stages that keep a step stable when its length times the spectral radius is `dt_radius`.
+    pub fn needed(dt_radius: f64) -> usize {
+        // The cast saturates, so that no radius overflows it.
+        stages_for(dt_radius) as usize
+    }
+
+    /// Largest product of step and spectral radius that `n_stages` keep stable.
+    pub fn reach(n_stages: usize) -> f64 {
+        let most = n_stages.saturating_sub(1) as f64;
+        ((most * most - 1.0) / 1.54).max(0.0) + 0.5
+    }
+
+    /// Factor of the rate in the first stage.
+    pub fn first(&self) -> f64 {
+        self.b2 * self.w1
+    }
+
+    /// Factors of the next stage.
+    pub fn next_stage(&mut self) -> Rkc2Stage {
+        let next = self.here.next(self.before, self.w0);
+        let b = next.b();
+        let on_rate = 2.0 * b * self.w1 / self.b_here;
+        let stage = Rkc2Stage {
+            on_last: 2.0 * b * self.w0 / self.b_here,
+            on_before: -b / self.b_before,
+            on_rate,
+            on_start_rate: -(1.0 - self.b_here * self.here.t) * on_rate,
+        };
+        (self.before, self.here) = (self.here, next);
+        (self.b_before, self.b_here) = (self.b_here, b);
+        stage
+    }
+}
+
 impl<M: SpectralBound> Stepper<M> for Rkc2 {
     fn step(
         &mut self,
@@ -154,9 +241,7 @@ impl<M: SpectralBound> Stepper<M> for Rkc2 {
         }
         self.counters.n_trials += 1;
         self.end_rate_known = false;
-        let needed = stages_for(dt * self.radius(model, state)?);
-        // The cast saturates, so that no radius overflows it.
-        let n_stages = needed as usize;
+        let n_stages = Rkc2Stages::needed(dt * self.radius(model, state)?);
         if n_stages > self.max_stages {
             return Err(Rejection::TooManyStages {
                 needed: n_stages,
@@ -169,32 +254,19 @@ impl<M: SpectralBound> Stepper<M> for Rkc2 {
             self.rate_known = true;
         }
 
-        let s = n_stages as f64;
-        let w0 = 1.0 + DAMPING / (s * s);
-        let (mut before, mut here) = (Chebyshev::ZERO, Chebyshev::one(w0));
-        for _ in 1..n_stages {
-            (before, here) = (here, here.next(before, w0));
-        }
-        let w1 = here.dt / here.ddt;
-
-        // b_0 = b_1 = b_2.
-        let (mut t_before, mut t_here) = (Chebyshev::ZERO, Chebyshev::one(w0));
-        let b2 = t_here.next(t_before, w0).b();
-        let (mut b_before, mut b_here) = (b2, b2);
+        let mut stages = Rkc2Stages::new(n_stages);
+        let first = stages.first() * dt;
         self.before.fill(0.0);
         for (d, f) in self.last.iter_mut().zip(&self.rate) {
-            *d = b2 * w1 * dt * f;
+            *d = first * f;
         }
         for _ in 2..=n_stages {
             model.advance(state, &self.last, to)?;
             self.counters.n_rate_evaluations += 1;
             model.rate(to, &mut self.stage_rate)?;
-            let t_next = t_here.next(t_before, w0);
-            let b_next = t_next.b();
-            let mu = 2.0 * b_next * w0 / b_here;
-            let nu = -b_next / b_before;
-            let mu_rate = 2.0 * b_next * w1 / b_here * dt;
-            let start_rate = -(1.0 - b_here * t_here.t) * mu_rate;
+            let stage = stages.next_stage();
+            let (mu, nu) = (stage.on_last, stage.on_before);
+            let (mu_rate, start_rate) = (stage.on_rate * dt, stage.on_start_rate * dt);
             for i in 0..n {
                 let next = mu * self.last[i]
                     + nu * self.before[i]
@@ -203,8 +275,6 @@ impl<M: SpectralBound> Stepper<M> for Rkc2 {
                 self.before[i] = self.last[i];
                 self.last[i] = next;
             }
-            (t_before, t_here) = (t_here, t_next);
-            (b_before, b_here) = (b_here, b_next);
         }
         model.advance(state, &self.last, to)?;
         self.counters.n_rate_evaluations += 1;
@@ -240,8 +310,7 @@ impl<M: SpectralBound> Stepper<M> for Rkc2 {
     }
 
     fn longest_step(&mut self, model: &mut M, state: &M::State) -> Result<f64, Rejection> {
-        let most = (self.max_stages - 1) as f64;
-        let reach = ((most * most - 1.0) / 1.54).max(0.0) + 0.5;
+        let reach = Rkc2Stages::reach(self.max_stages);
         Ok(reach * (1.0 - 1e-12) / self.radius(model, state)?)
     }
 

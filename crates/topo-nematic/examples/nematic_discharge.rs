@@ -1,0 +1,106 @@
+//! Charges a colloid with n_q anchoring, switches the anchoring off and follows the discharge.
+//!
+//! ```text
+//! cargo run --release -p topo-nematic --example nematic_discharge -- [charge] [radius] [spacing] [seed]
+//! ```
+
+use std::time::Instant;
+
+use topo_core::Interrupt;
+use topo_nematic::{
+    ChargeSettings, DischargeSettings, NematicAccuracy, NematicBattery, NematicParameters,
+    Progress, RunHooks, SurfacePattern, SwitchSettings,
+};
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let argument =
+        |k: usize, default: f64| std::env::args().nth(k).map_or(Ok(default), |a| a.parse());
+    let (charge, radius, spacing, seed) = (
+        argument(1, 3.0)? as i32,
+        argument(2, 10.0)?,
+        argument(3, 1.5)?,
+        argument(4, 0.05)?,
+    );
+    let parameters = NematicParameters {
+        radius,
+        spacing,
+        pattern: SurfacePattern::Charge(charge),
+        ..Default::default()
+    };
+    let battery = NematicBattery::new(&parameters, &NematicAccuracy::default())?;
+    for warning in battery.warnings() {
+        println!("warning: {warning}");
+    }
+    println!("cells {:?}", battery.grid().cells());
+    let interrupt = Interrupt::new();
+    let settings = ChargeSettings {
+        seeds: vec![seed],
+        ..Default::default()
+    };
+    let clock = Instant::now();
+    let mut show = |p: &Progress| {
+        if std::env::var_os("TOPO_VERBOSE").is_some() {
+            println!("  step {:5}  rms H {:.2e}", p.step, p.rms_field);
+        }
+    };
+    let mut hooks = RunHooks::new(&interrupt).with_progress(&mut show);
+    let charged = battery.charge(&settings, &mut hooks)?;
+    let report = charged.report();
+    println!(
+        "charged:    F = {:.2} (elastic {:.2}, bulk {:.2}), tilt {:.5} at {:.0} deg, {} steps, rms H {:.1e}, {}, {:.2} s",
+        report.energy.total(),
+        report.energy.elastic,
+        report.energy.bulk,
+        report.order.magnitude(),
+        report.order.azimuth().to_degrees(),
+        report.n_steps,
+        report.rms_field,
+        report.stop,
+        clock.elapsed().as_secs_f64()
+    );
+    if let Some(ring) = charged.ring(0.35) {
+        println!(
+            "ring:       radius {:.3} R, height mode {} of amplitude {:.3} xi_N",
+            ring.radius / radius,
+            ring.mode(),
+            ring.amplitude()
+        );
+    }
+    let clock = Instant::now();
+    let switched = charged.switch(&SwitchSettings::default())?;
+    println!(
+        "switched:   F = {:.2}, removed {:.2e}",
+        switched.start(),
+        switched.removed()
+    );
+    let run = switched.discharge(
+        &DischargeSettings::default(),
+        &mut RunHooks::new(&interrupt),
+    )?;
+    let report = &run.record.report;
+    println!(
+        "discharged: {} steps, {} refused, {} evaluations, ledger residual {:.1e}, {}, {:.2} s",
+        report.n_steps,
+        report.rejections.total(),
+        report.counters.n_rate_evaluations,
+        report.ledger_residual,
+        report.stop,
+        clock.elapsed().as_secs_f64()
+    );
+    let (curve, unit) = (&run.record.curve, battery.diffusion_time());
+    for share in [0.5, 0.9, 0.99, 0.999] {
+        let left = (1.0 - share) * run.start;
+        if let Some(i) = (1..curve.len()).find(|i| curve.stored_total(*i) <= left) {
+            // Between steps the energy decays about exponentially.
+            let (e0, e1) = (curve.stored_total(i - 1), curve.stored_total(i));
+            let (t0, t1) = (curve.time()[i - 1], curve.time()[i]);
+            let time = t0 + (t1 - t0) * (e0 / left).ln() / (e0 / e1).ln();
+            println!(
+                "  {:5.1} % released at {:.4} R^2/(Gamma L)",
+                100.0 * share,
+                time / unit
+            );
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,269 @@
+//! Charging: the nematic relaxes with a pattern on the particle.
+
+use serde::{Deserialize, Serialize};
+use topo_core::{CpuClock, InvalidValue, finite, positive};
+
+use super::NematicBattery;
+use super::hooks::{Phase, Progress, RunHooks};
+use super::record::ChargeReport;
+use crate::kernel::run::Kernel;
+use crate::memory::ByteAccount;
+use crate::relax::{Clock, Relaxation};
+use crate::{EnergyParts, NematicError, NematicState, OrderParameter, Ring, order_parameter, ring};
+
+/// How a nematic is charged.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct ChargeSettings {
+    /// Tilts of the start fields, in radians: each is relaxed, and the state of least energy kept.
+    pub seeds: Vec<f64>,
+    /// Direction of the tilt, in radians from x.
+    pub seed_azimuth: f64,
+    /// Root mean square of the molecular field that counts as converged.
+    pub tolerance: f64,
+    /// Largest change of the order parameter over 50 steps that counts as converged.
+    pub order_tolerance: f64,
+    /// Relax on a grid of twice the spacing first. Faster, but a coarse grid may buckle where a fine one does not.
+    pub coarse_start: bool,
+    /// Limit of steps for each start field.
+    pub max_steps: u64,
+}
+
+impl Default for ChargeSettings {
+    fn default() -> Self {
+        Self {
+            seeds: vec![0.05],
+            seed_azimuth: 0.0,
+            tolerance: 1e-8,
+            order_tolerance: 1e-6,
+            coarse_start: false,
+            max_steps: 50_000,
+        }
+    }
+}
+
+impl ChargeSettings {
+    fn check(&self) -> Result<(), NematicError> {
+        if self.seeds.is_empty() {
+            return Err(InvalidValue::new("charge.seeds", 0.0, "one tilt at least").into());
+        }
+        for seed in &self.seeds {
+            finite("charge.seeds", *seed)?;
+        }
+        finite("charge.seed-azimuth", self.seed_azimuth)?;
+        positive("charge.tolerance", self.tolerance)?;
+        positive("charge.order-tolerance", self.order_tolerance)?;
+        Ok(())
+    }
+}
+
+/// A charged battery: the relaxed nematic, and how it got there.
+#[derive(Debug, Clone)]
+pub struct ChargedNematic {
+    pub(crate) battery: NematicBattery,
+    pub(crate) state: NematicState,
+    report: ChargeReport,
+}
+
+/// Steps between looks at the order parameter.
+const CHECK_EVERY: u64 = 50;
+const SCHEMA: &str = "nematic-charge/1";
+
+/// A charge that is not finished.
+#[derive(Serialize, Deserialize)]
+struct Unfinished {
+    seed: usize,
+    best: Option<(f64, NematicState, f64, f64)>,
+    q: Vec<f64>,
+    velocity: Vec<f64>,
+    clock: Clock,
+    n_steps: u64,
+    last_order: Option<f64>,
+}
+
+impl NematicBattery {
+    /// Lets the nematic relax with the pattern on the particle.
+    ///
+    /// A charge that is interrupted or reaches its limit of steps keeps what it has and says so in its report.
+    ///
+    /// # Errors
+    /// A setting out of range, or a checkpoint that cannot be used.
+    pub fn charge(
+        &self,
+        settings: &ChargeSettings,
+        hooks: &mut RunHooks<'_>,
+    ) -> Result<ChargedNematic, NematicError> {
+        settings.check()?;
+        let clock = CpuClock::start();
+        let kernel = self.kernel::<f64>(&self.charged_surface(), self.accuracy.threads);
+        let order_scale = self.parameters.material.order();
+        let case = format!("{:?} {settings:?}", self.parameters);
+        let mut unfinished: Option<Unfinished> = hooks.resume(SCHEMA, &case)?;
+        let (first, mut best, mut n_steps) = match &mut unfinished {
+            Some(u) => (u.seed, u.best.take(), u.n_steps),
+            None => (0, None, 0),
+        };
+        let (mut stop, mut n_bytes) = ("converged", 0);
+        for (index, seed) in settings.seeds.iter().enumerate().skip(first) {
+            let mut relaxation = Relaxation::new(&kernel);
+            let mut last_order = None;
+            match unfinished.take() {
+                Some(u) => {
+                    relaxation.restore(u.q, u.velocity, u.clock);
+                    last_order = u.last_order;
+                }
+                None => {
+                    let start = self.charge_start(settings, *seed, hooks)?;
+                    relaxation.set(start.q_tensor());
+                }
+            }
+            n_bytes = relaxation.n_bytes();
+            let mut rms;
+            loop {
+                rms = relaxation.step();
+                n_steps += 1;
+                let step = relaxation.clock.n_steps;
+                if !rms.is_finite() {
+                    return Err(NematicError::Diverged { step });
+                }
+                if step.is_multiple_of(CHECK_EVERY) {
+                    let order = kernel.tilt(&relaxation.q, order_scale);
+                    let settled = last_order
+                        .is_some_and(|last: f64| (order - last).abs() < settings.order_tolerance);
+                    last_order = Some(order);
+                    hooks.report(&Progress {
+                        phase: Phase::Charge,
+                        step,
+                        time: 0.0,
+                        energy: None,
+                        rms_field: rms,
+                    });
+                    if settled && rms < settings.tolerance {
+                        break;
+                    }
+                } else if step >= settings.max_steps || hooks.is_interrupted() || hooks.is_due() {
+                    let ends = step >= settings.max_steps || hooks.is_interrupted();
+                    if hooks.is_due() {
+                        let record = Unfinished {
+                            seed: index,
+                            best: best.clone(),
+                            q: relaxation.q.clone(),
+                            velocity: relaxation.velocity.clone(),
+                            clock: relaxation.clock,
+                            n_steps,
+                            last_order,
+                        };
+                        hooks.save(SCHEMA, &case, &record)?;
+                    }
+                    if ends {
+                        stop = if hooks.is_interrupted() {
+                            "interrupted"
+                        } else {
+                            "step-limit"
+                        };
+                        break;
+                    }
+                }
+            }
+            let energy = kernel.energy(&relaxation.q).total();
+            if best.as_ref().is_none_or(|(least, ..)| energy < *least) {
+                let mut state = self.start(0.0, 0.0)?;
+                kernel.gather(&relaxation.into_q(), state.q_mut());
+                best = Some((energy, state, *seed, rms));
+            }
+            if stop == "interrupted" {
+                break;
+            }
+        }
+        let Some((_, state, seed, rms_field)) = best else {
+            return Err(NematicError::Diverged { step: 0 });
+        };
+        if stop != "interrupted" {
+            hooks.finish();
+        }
+        let report = ChargeReport {
+            stop,
+            seed,
+            n_steps,
+            rms_field,
+            energy: kernel.energy_of(&state),
+            order: order_parameter(&state, order_scale),
+            cpu_seconds: clock.seconds(),
+            bytes: ByteAccount {
+                fields: n_bytes,
+                geometry: kernel.domain.n_bytes(),
+                flow: 0,
+            },
+        };
+        Ok(ChargedNematic {
+            battery: self.clone(),
+            state,
+            report,
+        })
+    }
+
+    fn charge_start(
+        &self,
+        settings: &ChargeSettings,
+        seed: f64,
+        _hooks: &RunHooks<'_>,
+    ) -> Result<NematicState, NematicError> {
+        self.start(seed, settings.seed_azimuth)
+    }
+}
+
+impl ChargedNematic {
+    /// The battery it was made from.
+    pub fn battery(&self) -> &NematicBattery {
+        &self.battery
+    }
+
+    /// The tensor field.
+    pub fn state(&self) -> &NematicState {
+        &self.state
+    }
+
+    /// How it was charged.
+    pub fn report(&self) -> &ChargeReport {
+        &self.report
+    }
+
+    /// Energy by part, in L xi_N.
+    pub fn energy(&self) -> &EnergyParts {
+        &self.report.energy
+    }
+
+    /// Order parameter of buckling.
+    pub fn order(&self) -> &OrderParameter {
+        &self.report.order
+    }
+
+    /// The defect ring: the line of lowest order around the particle, up to the order `threshold`.
+    pub fn ring(&self, threshold: f64) -> Option<Ring> {
+        ring(&self.state, threshold)
+    }
+}
+
+impl Kernel<f64> {
+    /// Energy of a state.
+    pub(crate) fn energy_of(&self, state: &NematicState) -> EnergyParts {
+        let mut q = vec![0.0; self.array_length()];
+        self.spread(state.q_tensor(), &mut q);
+        self.energy(&q)
+    }
+
+    /// Length of the mean horizontal tilt over active cells.
+    fn tilt(&self, q: &[f64], order: f64) -> f64 {
+        let mut sums = [0.0; 2];
+        for (sum, c) in sums.iter_mut().zip([2, 4]) {
+            let component = &q[c * self.stride..];
+            for run in &self.domain.runs {
+                let run = run.start as usize..(run.start + run.length) as usize;
+                *sum += component[run].iter().sum::<f64>();
+            }
+            let special = self.domain.special.iter();
+            *sum += special.map(|s| component[s.cell as usize]).sum::<f64>();
+        }
+        sums[0].hypot(sums[1]) / (1.5 * order.max(1e-300) * self.domain.n_active.max(1) as f64)
+    }
+}

@@ -1,0 +1,297 @@
+//! Discharging: the nematic relaxes in time after the switch.
+
+use serde::{Deserialize, Serialize};
+use topo_core::{
+    CpuClock, DischargeCurve, Ledger, Rejection, RejectionCounts, Schedule, StepControl,
+    StopReason, in_range, positive,
+};
+
+use super::hooks::{Phase, Progress, RunHooks};
+use super::record::{CHANNELS, NematicSample, PhaseReport, RunRecord};
+use super::switch::SwitchedNematic;
+use crate::kernel::run::Kernel;
+use crate::memory::ByteAccount;
+use crate::real::Real;
+use crate::stabilised::Stabilised;
+use crate::{EnergyParts, NematicError, NematicState, Precision, order_parameter, ring};
+
+/// How far a discharge is followed and how often it is looked at.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct DischargeSettings {
+    /// Share of the energy after the switch whose release ends the run.
+    pub until_released: f64,
+    /// Longest time followed, in R²/(Gamma L).
+    pub longest: f64,
+    /// First output time after the switch, in R²/(Gamma L).
+    pub first_output: f64,
+    /// Output times a decade.
+    pub outputs_per_decade: f64,
+    /// Order below which a cell belongs to the defect ring.
+    pub ring_threshold: f64,
+}
+
+impl Default for DischargeSettings {
+    fn default() -> Self {
+        Self {
+            until_released: 0.9995,
+            longest: 10.0,
+            first_output: 1e-4,
+            outputs_per_decade: 8.0,
+            ring_threshold: 0.35,
+        }
+    }
+}
+
+/// A discharge: what the switch took, and how the rest was released.
+#[derive(Debug, Clone)]
+pub struct Discharge {
+    /// Energy that the switch itself removed, in L xi_N.
+    pub removed: f64,
+    /// Energy just after the switch, in L xi_N: released shares count from it.
+    pub start: f64,
+    /// The run.
+    pub record: RunRecord,
+    /// The last state.
+    pub state: NematicState,
+}
+
+impl Discharge {
+    /// Whether the share asked for was released.
+    pub fn is_finished(&self) -> bool {
+        matches!(self.record.report.stop, StopReason::Condition(_))
+    }
+}
+
+const SCHEMA: &str = "nematic-discharge/1";
+/// First step, in h²/(Gamma L).
+const FIRST_STEP: f64 = 1e-3;
+
+/// A discharge that is not finished.
+#[derive(Clone, Serialize, Deserialize)]
+struct Progressing {
+    time: f64,
+    dt: f64,
+    n_steps: u64,
+    n_trials: u64,
+    ledger: Ledger,
+    rejections: RejectionCounts,
+    counters: topo_core::Counters,
+    curve: DischargeCurve,
+    samples: Vec<NematicSample>,
+}
+
+impl SwitchedNematic {
+    /// Lets the nematic go.
+    ///
+    /// # Errors
+    /// A setting out of range, or a checkpoint that cannot be used.
+    pub fn discharge(
+        &self,
+        settings: &DischargeSettings,
+        hooks: &mut RunHooks<'_>,
+    ) -> Result<Discharge, NematicError> {
+        in_range(
+            "discharge.until-released",
+            settings.until_released,
+            1e-6,
+            1.0 - 1e-9,
+        )?;
+        positive("discharge.longest", settings.longest)?;
+        match self.charged.battery.accuracy.precision {
+            Precision::Double => self.discharge_in::<f64>(settings, hooks),
+            Precision::Single => self.discharge_in::<f32>(settings, hooks),
+        }
+    }
+
+    fn discharge_in<T: Real>(
+        &self,
+        settings: &DischargeSettings,
+        hooks: &mut RunHooks<'_>,
+    ) -> Result<Discharge, NematicError> {
+        let clock = CpuClock::start();
+        let battery = &self.charged.battery;
+        let (accuracy, material) = (battery.accuracy(), &battery.parameters().material);
+        let unit = battery.diffusion_time();
+        let kernel = battery.kernel::<T>(&self.settings.surface(), accuracy.threads);
+        let case = format!(
+            "{:?} {:?} {:?} {settings:?}",
+            battery.parameters(),
+            accuracy,
+            self.settings
+        );
+        let mut state = self.state.clone();
+        let resumed: Option<(Progressing, Vec<f64>)> = hooks.resume(SCHEMA, &case)?;
+        let h = battery.grid().spacing();
+        let power_unit = material.rotational_mobility * h * h * h;
+        let mut run = match resumed {
+            Some((run, q)) => {
+                state.q_mut().copy_from_slice(&q);
+                run
+            }
+            None => {
+                let mut ledger = Ledger::new(&EnergyParts::NAMES, &CHANNELS);
+                let before = self.charged.energy();
+                ledger.set_stored(&before.as_array());
+                Progressing {
+                    time: 0.0,
+                    dt: FIRST_STEP * h * h
+                        / (material.rotational_mobility * material.elastic_constant),
+                    n_steps: 0,
+                    n_trials: 0,
+                    ledger,
+                    rejections: RejectionCounts::default(),
+                    counters: topo_core::Counters::default(),
+                    curve: DischargeCurve::new(EnergyParts::NAMES, CHANNELS),
+                    samples: Vec::new(),
+                }
+            }
+        };
+        let mut field = {
+            let mut q = vec![T::of(0.0); kernel.array_length()];
+            kernel.spread(state.q_tensor(), &mut q);
+            Stabilised::new(&kernel, q)
+        };
+        field.counters = run.counters;
+        let mut energy = kernel.energy(&field.q);
+        if run.n_steps == 0 {
+            let removed = run.ledger.stored_total() - energy.total();
+            run.ledger.record_event("switch", 0.0, removed);
+            run.ledger.set_stored(&energy.as_array());
+        }
+        let start = self.start();
+        let goal = (1.0 - settings.until_released) * start;
+        let until = settings.longest * unit;
+        let mut control =
+            StepControl::new(accuracy.tolerance, run.dt)?.with_limits(1e-9 * run.dt, until)?;
+        let mut outputs =
+            Schedule::log_spaced(settings.first_output * unit, settings.outputs_per_decade)?;
+        if let Some(last) = run.samples.last() {
+            // Outputs up to the last one are done.
+            outputs.due(last.time, run.n_steps.saturating_sub(1));
+        }
+        let longest = field.longest_step(&kernel);
+        field.update_rate(&kernel, None);
+        let stop = loop {
+            if run.curve.time().last().is_none_or(|last| run.time > *last) {
+                let dissipated = [0, 1].map(|c| run.ledger.dissipated(c));
+                if let Err(error) = run.curve.push(run.time, &energy.as_array(), &dissipated) {
+                    tracing::warn!(%error, "a step is missing from the energy curve");
+                }
+            }
+            let finished = energy.total() <= goal;
+            if (outputs.due(run.time, run.n_steps) || finished)
+                && run.samples.last().is_none_or(|s| s.time < run.time)
+            {
+                kernel.gather(&field.q, state.q_mut());
+                let sample = NematicSample {
+                    time: run.time,
+                    energy,
+                    dissipated: [0, 1].map(|c| run.ledger.dissipated(c)),
+                    order: order_parameter(&state, material.order()),
+                    ring: ring(&state, settings.ring_threshold),
+                    max_speed: None,
+                };
+                if hooks.wants_samples() {
+                    hooks.show(&sample, &state);
+                }
+                run.samples.push(sample);
+            }
+            if finished {
+                break StopReason::Condition("released".to_owned());
+            }
+            if run.time >= until {
+                break StopReason::ReachedTime;
+            }
+            if hooks.is_due() {
+                kernel.gather(&field.q, state.q_mut());
+                run.dt = control.dt();
+                run.counters = field.counters;
+                hooks.save(SCHEMA, &case, &(&run, state.q_tensor()))?;
+            }
+            if hooks.is_interrupted() {
+                break StopReason::Interrupted;
+            }
+            if run.n_trials >= accuracy.max_steps {
+                break StopReason::StepLimit { n: run.n_trials };
+            }
+            run.n_trials += 1;
+            let remaining = until - run.time;
+            let dt = control.dt().min(longest).min(remaining);
+            let result = field.try_step(&kernel, dt, None).and_then(|error| {
+                let error = error / material.order().max(1e-3);
+                control.judge(error).map(|()| error)
+            });
+            match result {
+                Ok(error) => {
+                    let dissipated = power_unit
+                        * dt
+                        * mean_power(field.square_of_field, field.candidate_square());
+                    field.accept();
+                    run.ledger.dissipate(0, dissipated);
+                    energy = kernel.energy(&field.q);
+                    run.ledger.set_stored(&energy.as_array());
+                    control.accept(dt, error, 3);
+                    run.time = if dt < remaining { run.time + dt } else { until };
+                    run.n_steps += 1;
+                    hooks.report(&Progress {
+                        phase: Phase::Discharge,
+                        step: run.n_steps,
+                        time: run.time,
+                        energy: Some(energy.total()),
+                        rms_field: (field.square_of_field / kernel.domain.total_mass.max(1.0))
+                            .sqrt(),
+                    });
+                }
+                Err(why) => {
+                    run.rejections.add(&why);
+                    if matches!(why, Rejection::Fatal { .. }) {
+                        break StopReason::Failed { why };
+                    }
+                    if control.reject(dt, &why, 3).is_none() {
+                        break StopReason::StepTooSmall { dt, last: why };
+                    }
+                }
+            }
+        };
+        kernel.gather(&field.q, state.q_mut());
+        if stop != StopReason::Interrupted {
+            hooks.finish();
+        }
+        let report = PhaseReport {
+            stop,
+            time: run.time,
+            n_steps: run.n_steps,
+            rejections: run.rejections,
+            counters: field.counters,
+            ledger_residual: run.ledger.relative_residual(),
+            ledger: run.ledger,
+            bytes: ByteAccount {
+                fields: field.n_bytes(),
+                geometry: kernel.domain.n_bytes(),
+                flow: 0,
+            },
+            cpu_seconds: clock.seconds(),
+        };
+        Ok(Discharge {
+            removed: self.removed(),
+            start,
+            record: RunRecord {
+                curve: run.curve,
+                samples: run.samples,
+                report,
+            },
+            state,
+        })
+    }
+}
+
+/// Mean of a power that decays exponentially from one value to the other.
+fn mean_power(from: f64, to: f64) -> f64 {
+    let ratio = (from / to).ln();
+    if ratio.is_finite() && ratio.abs() > 1e-4 {
+        (from - to) / ratio
+    } else {
+        0.5 * (from + to)
+    }
+}

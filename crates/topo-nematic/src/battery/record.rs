@@ -1,0 +1,89 @@
+//! What a phase of a run leaves behind.
+
+use serde::{Deserialize, Serialize};
+use topo_core::{Counters, DischargeCurve, Ledger, RejectionCounts, StopReason};
+
+use crate::memory::ByteAccount;
+use crate::{EnergyParts, OrderParameter, Ring};
+
+/// Channels by which energy is dissipated, as tables name them.
+pub(crate) const CHANNELS: [&str; 2] = ["rotation", "viscous"];
+
+/// How a charge went.
+#[derive(Debug, Clone, Serialize)]
+pub struct ChargeReport {
+    /// Why it ended: "converged", "step-limit" or "interrupted".
+    pub stop: &'static str,
+    /// Tilt of the start field that led to the state kept.
+    pub seed: f64,
+    /// Steps of the relaxation, over all start fields.
+    pub n_steps: u64,
+    /// Root mean square of the molecular field at the end.
+    pub rms_field: f64,
+    /// Energy by part, in L xi_N.
+    pub energy: EnergyParts,
+    /// Order parameter of buckling.
+    pub order: OrderParameter,
+    /// Processor seconds of the calling thread.
+    pub cpu_seconds: f64,
+    /// Bytes by component.
+    pub bytes: ByteAccount,
+}
+
+impl ChargeReport {
+    /// Whether it converged.
+    pub fn is_converged(&self) -> bool {
+        self.stop == "converged"
+    }
+}
+
+/// The nematic at one output time of a discharge.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct NematicSample {
+    /// Time since the switch, in tau_N.
+    pub time: f64,
+    /// Energy by part, in L xi_N.
+    pub energy: EnergyParts,
+    /// Dissipated so far by rotation and by viscosity, in L xi_N.
+    pub dissipated: [f64; 2],
+    /// Order parameter.
+    pub order: OrderParameter,
+    /// The defect ring, while there is one.
+    pub ring: Option<Ring>,
+    /// Largest speed, in xi_N/tau_N; none without flow.
+    pub max_speed: Option<f64>,
+}
+
+/// Counters and guards of a discharge.
+#[derive(Debug, Clone, Serialize)]
+pub struct PhaseReport {
+    /// Why it ended.
+    pub stop: StopReason,
+    /// Time it covered, in tau_N.
+    pub time: f64,
+    /// Accepted steps.
+    pub n_steps: u64,
+    /// Refused steps by name.
+    pub rejections: RejectionCounts,
+    /// Work of the integrator.
+    pub counters: Counters,
+    /// Relative residual of the energy account.
+    pub ledger_residual: f64,
+    /// The energy account, in L xi_N.
+    pub ledger: Ledger,
+    /// Bytes by component.
+    pub bytes: ByteAccount,
+    /// Processor seconds of the calling thread.
+    pub cpu_seconds: f64,
+}
+
+/// What a discharge leaves behind.
+#[derive(Debug, Clone, Serialize)]
+pub struct RunRecord {
+    /// Energies at every accepted step: times in tau_N, energies in L xi_N.
+    pub curve: DischargeCurve,
+    /// The nematic at output times.
+    pub samples: Vec<NematicSample>,
+    /// Counters and guards.
+    pub report: PhaseReport,
+}

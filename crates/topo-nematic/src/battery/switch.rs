@@ -1,0 +1,255 @@
+//! The release: the anchoring is switched.
+
+use serde::{Deserialize, Serialize};
+
+use super::charge::ChargedNematic;
+use crate::anchoring::{Anchoring, SurfacePattern};
+use crate::boundary::{FreeSurface, norm};
+use crate::domain::{STEPS, neighbour};
+use crate::kernel::run::{Kernel, Threads};
+use crate::model::Surface;
+use crate::{NematicError, NematicState};
+
+/// What the surface does after the switch.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum SwitchTarget {
+    /// Nothing: the director may take any orientation.
+    Free(FreeSurface),
+    /// It prefers another pattern.
+    Pattern {
+        /// The pattern.
+        pattern: SurfacePattern,
+        /// How strongly.
+        anchoring: Anchoring,
+    },
+}
+
+impl Default for SwitchTarget {
+    fn default() -> Self {
+        Self::Free(FreeSurface::CutCell)
+    }
+}
+
+/// How the anchoring is switched.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct SwitchSettings {
+    /// What to.
+    pub to: SwitchTarget,
+    /// Over which time, in tau_N; at once when left out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ramp: Option<f64>,
+}
+
+/// A battery whose anchoring has just been switched, with the account of what the switch took.
+#[derive(Debug, Clone)]
+pub struct SwitchedNematic {
+    pub(crate) charged: ChargedNematic,
+    pub(crate) settings: SwitchSettings,
+    pub(crate) state: NematicState,
+    start: f64,
+}
+
+impl ChargedNematic {
+    /// Switches the anchoring.
+    ///
+    /// A free surface keeps the values that the pattern had given it, as start values of the cells that the sphere cuts; how steeply
+    /// they go on inside is set so that the energy does not jump, as far as that is possible.
+    ///
+    /// # Errors
+    /// A broken pattern or ramp; a battery without a particle.
+    pub fn switch(&self, settings: &SwitchSettings) -> Result<SwitchedNematic, NematicError> {
+        let mut settings = settings.clone();
+        if let Some(ramp) = settings.ramp {
+            topo_core::positive("switch.ramp", ramp)?;
+        }
+        if self.battery.particle.is_none() {
+            return Err(NematicError::NoParticle {
+                operation: "a switch of the anchoring",
+            });
+        }
+        if let SwitchTarget::Pattern { pattern, anchoring } = settings.to {
+            settings.to = SwitchTarget::Pattern {
+                pattern: pattern.checked()?,
+                anchoring: anchoring.checked("switch.to.pattern.anchoring.weak")?,
+            };
+        }
+        let mut state = self.state.clone();
+        let start = if settings.ramp.is_some() {
+            self.energy().total()
+        } else {
+            let kernel = self
+                .battery
+                .kernel::<f64>(&settings.surface(), Threads::One);
+            extend_into_cut_cells(self, &kernel, &mut state)
+        };
+        Ok(SwitchedNematic {
+            charged: self.clone(),
+            settings,
+            state,
+            start,
+        })
+    }
+}
+
+impl SwitchSettings {
+    pub(crate) fn surface(&self) -> Surface {
+        match &self.to {
+            SwitchTarget::Free(surface) => Surface::Free(*surface),
+            SwitchTarget::Pattern { pattern, anchoring } => {
+                Surface::Anchored(pattern.clone(), *anchoring)
+            }
+        }
+    }
+}
+
+impl SwitchedNematic {
+    /// What was switched.
+    pub fn charged(&self) -> &ChargedNematic {
+        &self.charged
+    }
+
+    /// The tensor field just after the switch.
+    pub fn state(&self) -> &NematicState {
+        &self.state
+    }
+
+    /// Energy just after the switch, in L xi_N.
+    pub fn start(&self) -> f64 {
+        self.start
+    }
+
+    /// Energy that the switch itself removed, in L xi_N; negative if it brought some.
+    pub fn removed(&self) -> f64 {
+        self.charged.energy().total() - self.start
+    }
+}
+
+/// A cell inside the sphere that takes part when it is free: its value on the surface, and the slope from there inwards.
+struct Extension {
+    cell: usize,
+    on_surface: [f64; 5],
+    inwards: [f64; 5],
+}
+
+/// Steepest extension tried, as a multiple of the linear one.
+const STEEPEST: f64 = 3.0;
+
+/// Gives values to the cells inside the sphere that `kernel` holds active, and the energy with them.
+pub(crate) fn extend_into_cut_cells(
+    charged: &ChargedNematic,
+    kernel: &Kernel<f64>,
+    state: &mut NematicState,
+) -> f64 {
+    let goal = charged.energy().total();
+    let extensions = extensions(charged, kernel, state);
+    let n = state.grid().n_cells();
+    let mut q = vec![0.0; kernel.array_length()];
+    kernel.spread(state.q_tensor(), &mut q);
+    let stride = kernel.stride;
+    let mut energy = |steepness: f64| {
+        for e in &extensions {
+            for c in 0..5 {
+                q[c * stride + e.cell] = e.on_surface[c] + steepness * e.inwards[c];
+            }
+        }
+        kernel.energy(&q).total()
+    };
+    let mut steepness = 0.0;
+    let mut start = energy(steepness);
+    if !extensions.is_empty() && start < goal {
+        // The energy is a convex function of the steepness but for its bulk part: bisect between flat and too steep.
+        let (mut low, mut high) = (0.0, STEEPEST);
+        start = energy(high);
+        steepness = high;
+        if start > goal {
+            for _ in 0..60 {
+                steepness = 0.5 * (low + high);
+                start = energy(steepness);
+                if (start / goal - 1.0).abs() < 1e-12 {
+                    break;
+                }
+                if start < goal {
+                    low = steepness;
+                } else {
+                    high = steepness;
+                }
+            }
+        }
+    }
+    let q = state.q_mut();
+    for e in &extensions {
+        for c in 0..5 {
+            q[c * n + e.cell] = e.on_surface[c] + steepness * e.inwards[c];
+        }
+    }
+    start
+}
+
+/// Values and slopes of the cells inside the sphere, from the links that cut its surface.
+fn extensions(
+    charged: &ChargedNematic,
+    kernel: &Kernel<f64>,
+    state: &NematicState,
+) -> Vec<Extension> {
+    let battery = &charged.battery;
+    let (grid, parameters) = (&battery.grid, battery.parameters());
+    let Some(particle) = &battery.particle else {
+        return Vec::new();
+    };
+    let (h, order) = (grid.spacing(), parameters.material.order());
+    let [nx, ny, _] = grid.cells();
+    let mut extensions = Vec::new();
+    for special in &kernel.domain.special {
+        let cell = special.cell as usize;
+        let ijk = [cell % nx, cell / nx % ny, cell / (nx * ny)];
+        if !particle.contains_cell(grid, ijk) {
+            continue;
+        }
+        let offset = particle.offset(grid, grid.centre(ijk));
+        let (mut on_surface, mut inwards, mut weights) = ([0.0; 5], [0.0; 5], 0.0);
+        for (link, (axis, up)) in STEPS.into_iter().enumerate() {
+            let Some(outer) = neighbour(grid, ijk, link).filter(|n| state.is_fluid(*n)) else {
+                continue;
+            };
+            let outside = particle.offset(grid, grid.centre(outer));
+            let share = crate::boundary::crossing(outside, axis, !up, h, particle.radius());
+            let mut end = outside;
+            end[axis] += if up { -share * h } else { share * h };
+            let there = state.tensor(grid.index(outer));
+            let link_share = share.max(crate::boundary::SHORTEST_LINK);
+            // With weak anchoring the surface is between what it prefers and what it touches.
+            let (held, _) = parameters.anchoring.conductance(
+                1.0 / link_share,
+                (end[axis] / norm(end)).abs(),
+                h / parameters.material.elastic_constant,
+            );
+            let held = held * link_share;
+            let wanted = parameters.pattern.q_tensor(order, end);
+            for c in 0..5 {
+                let surface = there[c] + held * (wanted[c] - there[c]);
+                on_surface[c] += link_share * surface;
+                // link_share cancels in the weighted slope.
+                inwards[c] += (1.0 - share) * (surface - there[c]);
+            }
+            weights += link_share;
+        }
+        if weights > 0.0 {
+            on_surface = on_surface.map(|x| x / weights);
+            inwards = inwards.map(|x| x / weights);
+        } else {
+            on_surface = match parameters.anchoring {
+                Anchoring::Free => state.tensor(cell),
+                _ => parameters.pattern.q_tensor(order, offset),
+            };
+        }
+        extensions.push(Extension {
+            cell,
+            on_surface,
+            inwards,
+        });
+    }
+    extensions
+}

@@ -1,0 +1,209 @@
+//! Free energy by part.
+
+use fearless_simd::{Simd, dispatch};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use crate::domain::SpecialCell;
+use crate::kernel::run::{Kernel, Place, Threads};
+use crate::real::Real;
+use crate::tensor::{Tensor5, contract};
+
+/// Free energy by part, in L xi_N; the bulk part counts from the uniform equilibrium.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct EnergyParts {
+    /// Of distortion.
+    pub elastic: f64,
+    /// Of order.
+    pub bulk: f64,
+    /// Of weak anchoring.
+    pub surface: f64,
+    /// Of the external field.
+    pub field: f64,
+}
+
+impl EnergyParts {
+    /// Names of the parts, as tables use them.
+    pub const NAMES: [&'static str; 4] = ["elastic", "bulk", "surface", "field"];
+
+    /// All parts together.
+    pub fn total(&self) -> f64 {
+        self.elastic + self.bulk + self.surface + self.field
+    }
+
+    /// In the order of the names.
+    pub fn as_array(&self) -> [f64; 4] {
+        [self.elastic, self.bulk, self.surface, self.field]
+    }
+}
+
+impl<T: Real> Kernel<T> {
+    /// Free energy of `q`.
+    ///
+    /// ```math
+    /// F = h^3 \sum_{cells} \varphi\, f(Q) + \frac{L h}{2} \sum_{links} w\, |Q_a - Q_b|^2
+    /// ```
+    ///
+    /// Links count half with each of their cells; sums are made plane by plane, so that threads do not matter.
+    pub(crate) fn energy(&self, q: &[T]) -> EnergyParts {
+        let nz = self.domain.grid.cells()[2];
+        let plane = |k: usize| dispatch!(self.level(), simd => self.plane_energy(simd, k, q));
+        let planes: Vec<[f64; 4]> = match self.threads {
+            Threads::One => (0..nz).map(plane).collect(),
+            Threads::All => (0..nz).into_par_iter().map(plane).collect(),
+        };
+        let mut sum = [0.0; 4];
+        for p in planes {
+            sum.iter_mut().zip(p).for_each(|(s, x)| *s += x);
+        }
+        let h = self.domain.grid.spacing();
+        let link = 0.5 * self.material().elastic_constant * h;
+        EnergyParts {
+            elastic: link * sum[0],
+            bulk: h * h * h * sum[1],
+            surface: link * sum[2],
+            field: h * h * h * sum[3],
+        }
+    }
+
+    /// Sums over a plane: squares of differences, bulk density, squares of anchored differences, field density.
+    #[inline(always)]
+    fn plane_energy<S: Simd>(&self, _simd: S, k: usize, q: &[T]) -> [f64; 4] {
+        let grid = &self.domain.grid;
+        let [nx, ny, _] = grid.cells();
+        let n = self.stride;
+        let m = self.material();
+        let reference = m.reference_density();
+        // The trace of Q³ is three times the determinant.
+        let (half_a, b, quarter_c) = (0.5 * m.a, m.b, 0.25 * m.c);
+        let mut sums = [0.0; 4];
+        let mut ghosts = vec![T::of(0.0); 20 * nx];
+        let has_field = self.field().iter().any(|e| *e != 0.0);
+        for run in self.domain.runs_of(k) {
+            let (start, length) = (run.start as usize, run.length as usize);
+            let j = start / nx % ny;
+            self.write_ghosts(q, start, length, [j, k], &mut ghosts);
+            let sides = self.side_rows(q, start, length, [j, k], &ghosts);
+            let place = Place {
+                start,
+                length,
+                local: start,
+            };
+            let ends = self.ends(q, &place, [j, k]);
+            let centre = self.components(q).map(|s| &s[start..start + length]);
+            // A link to a wall of conductance c shows as a step of c times the difference, and is not shared.
+            let share = |conductance: Option<f64>| match conductance {
+                None => 0.5,
+                Some(c) if c > 0.0 => 1.0 / c,
+                Some(_) => 0.0,
+            };
+            let beyond = self
+                .beyond([j, k])
+                .map(|wall| share(wall.map(|w| w.conductance)));
+            let [left, right] = self.end_walls(start, length).map(share);
+            let [xx, xy, xz, yy, yz] = centre;
+            const WIDTH: usize = 8;
+            let mut bulk = [0.0_f64; WIDTH];
+            let density = |i: usize| {
+                let (xx, xy, xz): (f64, f64, f64) = (xx[i].into(), xy[i].into(), xz[i].into());
+                let (yy, yz): (f64, f64) = (yy[i].into(), yz[i].into());
+                let zz = -xx - yy;
+                let t = xx * xx + yy * yy + zz * zz + 2.0 * (xy * xy + xz * xz + yz * yz);
+                let determinant =
+                    xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
+                t * (half_a + quarter_c * t) + b * determinant - reference
+            };
+            let whole = length - length % WIDTH;
+            for i in (0..whole).step_by(WIDTH) {
+                for lane in 0..WIDTH {
+                    bulk[lane] += density(i + lane);
+                }
+            }
+            let rest: f64 = (whole..length).map(density).sum();
+            let bulk: f64 = bulk.iter().sum::<f64>() + rest;
+            sums[1] += bulk;
+            if has_field {
+                for i in 0..length {
+                    let here: Tensor5 = centre.map(|s| s[i].into());
+                    sums[3] -= contract(self.field(), &here);
+                }
+            }
+            for (side, weight) in sides.iter().zip(beyond) {
+                sums[0] += weight * squares(&centre, side);
+            }
+            if length > 1 {
+                let inner = squares(&centre.map(|s| &s[1..]), &centre.map(|s| &s[..length - 1]));
+                sums[0] += inner;
+            }
+            for (cell, end, weight) in [(0, 0, left), (length - 1, 1, right)] {
+                let here: Tensor5 = centre.map(|s| s[cell].into());
+                let there: Tensor5 = ends[end].map(Into::into);
+                sums[0] += weight * square_of_difference(&here, &there);
+            }
+        }
+        for special in self.domain.special_of(k) {
+            let part = self.special_energy(q, n, special);
+            sums.iter_mut().zip(part).for_each(|(s, x)| *s += x);
+        }
+        sums
+    }
+
+    fn special_energy(&self, q: &[T], n: usize, special: &SpecialCell) -> [f64; 4] {
+        let value = |cell: usize| -> Tensor5 { std::array::from_fn(|c| q[c * n + cell].into()) };
+        let here = value(special.cell as usize);
+        let links: f64 = (special.weights.iter().zip(special.neighbours))
+            .map(|(w, other)| 0.5 * w * square_of_difference(&here, &value(other as usize)))
+            .sum();
+        let fixed = special.sink * contract(&here, &here) - 2.0 * contract(&here, &special.source)
+            + special.offset;
+        [
+            links + (1.0 - special.anchored) * fixed,
+            special.volume * self.material().bulk_density(&here),
+            special.anchored * fixed,
+            -special.volume * contract(self.field(), &here),
+        ]
+    }
+}
+
+fn square_of_difference(a: &Tensor5, b: &Tensor5) -> f64 {
+    let d: Tensor5 = std::array::from_fn(|c| a[c] - b[c]);
+    contract(&d, &d)
+}
+
+/// Sum of squares of differences, in the metric of the tensors.
+#[inline(always)]
+fn squares<T: Real>(a: &[&[T]; 5], b: &[&[T]; 5]) -> f64 {
+    let n = a[0].len();
+    let (a, b) = (a.map(|s| &s[..n]), b.map(|s| &s[..n]));
+    let [xx, xy, xz, yy, yz] = a;
+    let [xx2, xy2, xz2, yy2, yz2] = b;
+    // Several sums side by side, so that additions need not wait for each other.
+    const WIDTH: usize = 8;
+    let mut sums = [0.0_f64; WIDTH];
+    let mut i = 0;
+    while i + WIDTH <= n {
+        for lane in 0..WIDTH {
+            let at = i + lane;
+            let dxx: f64 = (xx[at] - xx2[at]).into();
+            let dyy: f64 = (yy[at] - yy2[at]).into();
+            let dxy: f64 = (xy[at] - xy2[at]).into();
+            let dxz: f64 = (xz[at] - xz2[at]).into();
+            let dyz: f64 = (yz[at] - yz2[at]).into();
+            let dzz = dxx + dyy;
+            sums[lane] +=
+                dxx * dxx + dyy * dyy + dzz * dzz + 2.0 * (dxy * dxy + dxz * dxz + dyz * dyz);
+        }
+        i += WIDTH;
+    }
+    for at in i..n {
+        let d: Tensor5 = [
+            (xx[at] - xx2[at]).into(),
+            (xy[at] - xy2[at]).into(),
+            (xz[at] - xz2[at]).into(),
+            (yy[at] - yy2[at]).into(),
+            (yz[at] - yz2[at]).into(),
+        ];
+        sums[0] += contract(&d, &d);
+    }
+    sums.iter().sum()
+}

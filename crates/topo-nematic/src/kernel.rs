@@ -1,0 +1,226 @@
+//! The fused kernel: Laplacian, bulk field and update of a stretch of cells in one pass.
+
+pub(crate) mod combine;
+mod elementwise;
+pub(crate) mod run;
+
+use crate::Material;
+use crate::real::{Lanes, Real};
+
+/// Widest vector, in numbers.
+const WIDEST: usize = 16;
+
+/// Coefficients of the molecular field of a cell whose six links are whole.
+///
+/// ```math
+/// H = \frac{L}{h^2} \sum_{6} (Q_n - Q) - A Q - B\,(Q^2)_{tr} - C\,(Q:Q)\,Q + E
+/// ```
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Coefficients<T> {
+    /// L/h².
+    link: T,
+    /// -A - 6 L/h².
+    linear: T,
+    /// -B.
+    quadratic: T,
+    /// -C.
+    cubic: T,
+    /// Uniform field E.
+    field: [T; 5],
+}
+
+impl<T: Real> Coefficients<T> {
+    pub(crate) fn new(material: &Material, spacing: f64, field: &[f64; 5]) -> Self {
+        let link = material.elastic_constant / (spacing * spacing);
+        Self {
+            link: T::of(link),
+            linear: T::of(-material.a - 6.0 * link),
+            quadratic: T::of(-material.b),
+            cubic: T::of(-material.c),
+            field: field.map(T::of),
+        }
+    }
+}
+
+/// A stretch of cells along x and its neighbours.
+pub(crate) struct Stretch<'a, T, S> {
+    /// Components of the whole field, of equal length.
+    pub field: [&'a [T]; 5],
+    /// First cell and number of cells.
+    pub start: usize,
+    pub length: usize,
+    /// Neighbours at -y, +y, -z, +z.
+    pub sides: S,
+    /// Neighbour of the first cell at -x and of the last at +x.
+    pub ends: [[T; 5]; 2],
+}
+
+/// Where the neighbours at -y, +y, -z, +z of a stretch are found.
+pub(crate) trait Sides<L: Lanes> {
+    /// Component `c` at neighbour `side` of the cells from `at` on.
+    fn load(&self, token: L::Token, field: &[L::Scalar], side: usize, c: usize, at: usize) -> L;
+}
+
+/// All in the field: the first neighbour at each side.
+pub(crate) struct InField(pub [usize; 4]);
+
+/// Some beyond a wall: copies of all of them.
+pub(crate) struct Copies<'a, T>(pub [[&'a [T]; 5]; 4]);
+
+impl<L: Lanes> Sides<L> for InField {
+    #[inline(always)]
+    fn load(&self, token: L::Token, field: &[L::Scalar], side: usize, _c: usize, at: usize) -> L {
+        let from = self.0[side] + at;
+        L::load(token, &field[from..from + L::N])
+    }
+}
+
+impl<L: Lanes> Sides<L> for Copies<'_, L::Scalar> {
+    #[inline(always)]
+    fn load(&self, token: L::Token, _field: &[L::Scalar], side: usize, c: usize, at: usize) -> L {
+        L::load(token, &self.0[side][c][at..at + L::N])
+    }
+}
+
+/// What is done with the molecular field of a few cells.
+pub(crate) trait Update<L: Lanes> {
+    /// Remembers what is to be read in place at cells `at..at + N`, which will be treated last, although some of them are
+    /// written before.
+    fn keep(&mut self, token: L::Token, at: usize);
+
+    /// Treats cells `at..at + N` with tensor `q` and molecular field `h`; `weight` is 0 for cells treated before, else 1.
+    fn cells(
+        &mut self,
+        token: L::Token,
+        at: usize,
+        q: &[L; 5],
+        h: &[L; 5],
+        weight: L,
+        is_last: bool,
+    );
+}
+
+/// One value a component; closures passed here must be inlined, or they are compiled for the least processor.
+#[inline(always)]
+pub(crate) fn five<L>(f: impl Fn(usize) -> L) -> [L; 5] {
+    [f(0), f(1), f(2), f(3), f(4)]
+}
+
+/// Passes over a stretch of at least N cells; a last incomplete vector overlaps the one before.
+#[inline(always)]
+pub(crate) fn pass<L: Lanes, S: Sides<L>, U: Update<L>>(
+    token: L::Token,
+    stretch: &Stretch<'_, L::Scalar, S>,
+    k: &Coefficients<L::Scalar>,
+    update: &mut U,
+) {
+    let (start, n, n_cells) = (stretch.start, stretch.length, stretch.field[0].len());
+    // Equal lengths, known to the compiler, share their checks below.
+    let q0 = &stretch.field[0][..n_cells];
+    let q1 = &stretch.field[1][..n_cells];
+    let q2 = &stretch.field[2][..n_cells];
+    let q3 = &stretch.field[3][..n_cells];
+    let q4 = &stretch.field[4][..n_cells];
+    let centre = [q0, q1, q2, q3, q4];
+    let (zero, one, two) = (
+        L::splat(token, L::Scalar::of(0.0)),
+        L::splat(token, L::Scalar::of(1.0)),
+        L::splat(token, L::Scalar::of(2.0)),
+    );
+    let third = L::splat(token, L::Scalar::of(-1.0 / 3.0));
+    let (link, linear, quadratic, cubic) = (
+        L::splat(token, k.link),
+        L::splat(token, k.linear),
+        L::splat(token, k.quadratic),
+        L::splat(token, k.cubic),
+    );
+    let field = five(
+        #[inline(always)]
+        |c| L::splat(token, k.field[c]),
+    );
+    let overlaps = !n.is_multiple_of(L::N);
+    let last = n - L::N;
+    if overlaps {
+        update.keep(token, last);
+    }
+    let mut at = 0;
+    loop {
+        let q: [L; 5] = five(
+            #[inline(always)]
+            |c| L::load(token, &centre[c][start + at..start + at + L::N]),
+        );
+        let [xx, xy, xz, yy, yz] = q;
+        let squares = [xx * xx, xy * xy, xz * xz, yy * yy, yz * yz];
+        let half = xx.mul_add(
+            yy,
+            (squares[0] + squares[3]) + (squares[1] + squares[2]) + squares[4],
+        );
+        let trace = half * two;
+        let traceless = trace * third;
+        let linear = cubic.mul_add(trace, linear);
+        // Traceless part of Q².
+        let square = [
+            (squares[0] + squares[1]) + (squares[2] + traceless),
+            xy.mul_add(xx + yy, xz * yz),
+            xy.mul_add(yz, zero - xz * yy),
+            (squares[1] + squares[3]) + (squares[4] + traceless),
+            xy.mul_add(xz, zero - yz * xx),
+        ];
+        let h: [L; 5] = five(
+            #[inline(always)]
+            |c| {
+                let left = if at == 0 {
+                    shifted_in::<L>(token, stretch.ends[0][c], &centre[c][start..])
+                } else {
+                    L::load(token, &centre[c][start + at - 1..start + at - 1 + L::N])
+                };
+                let right = if at == last {
+                    shifted_out::<L>(token, &centre[c][start + at..], stretch.ends[1][c])
+                } else {
+                    L::load(token, &centre[c][start + at + 1..start + at + 1 + L::N])
+                };
+                let below = stretch.sides.load(token, centre[c], 0, c, at);
+                let above = stretch.sides.load(token, centre[c], 1, c, at);
+                let back = stretch.sides.load(token, centre[c], 2, c, at);
+                let front = stretch.sides.load(token, centre[c], 3, c, at);
+                let sum = (left + right) + (below + above) + (back + front);
+                let bulk = linear.mul_add(q[c], quadratic.mul_add(square[c], field[c]));
+                link.mul_add(sum, bulk)
+            },
+        );
+        let is_last = at == last && overlaps;
+        let weight = if is_last { unseen::<L>(token, n) } else { one };
+        update.cells(token, at, &q, &h, weight, is_last);
+        if at == last {
+            break;
+        }
+        at = (at + L::N).min(last);
+    }
+}
+
+/// `first` followed by the first N - 1 of `rest`.
+#[inline(always)]
+fn shifted_in<L: Lanes>(token: L::Token, first: L::Scalar, rest: &[L::Scalar]) -> L {
+    let mut lanes = [first; WIDEST];
+    lanes[1..L::N].copy_from_slice(&rest[..L::N - 1]);
+    L::load(token, &lanes)
+}
+
+/// The second to the N-th of `rest`, followed by `last`.
+#[inline(always)]
+fn shifted_out<L: Lanes>(token: L::Token, rest: &[L::Scalar], last: L::Scalar) -> L {
+    let mut lanes = [last; WIDEST];
+    lanes[..L::N - 1].copy_from_slice(&rest[1..L::N]);
+    L::load(token, &lanes)
+}
+
+/// 0 for the lanes of the last vector of `n` cells that the vector before has covered.
+#[inline(always)]
+fn unseen<L: Lanes>(token: L::Token, n: usize) -> L {
+    let mut lanes = [L::Scalar::of(1.0); WIDEST];
+    lanes[..L::N - n % L::N].fill(L::Scalar::of(0.0));
+    L::load(token, &lanes)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,150 @@
+//! FIRE, fused with the kernel: a field relaxes to a minimum of its energy.
+
+use serde::{Deserialize, Serialize};
+
+use crate::kernel::run::{Combination, Kernel};
+use crate::real::Real;
+
+/// Downhill steps before the clock runs faster.
+const DELAY: u32 = 8;
+const GROWTH: f64 = 1.1;
+const SHRINK: f64 = 0.5;
+const MIXING_START: f64 = 0.15;
+const MIXING_SHRINK: f64 = 0.99;
+
+/// The clock of a relaxation.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Clock {
+    pub dt: f64,
+    mixing: f64,
+    n_downhill: u32,
+    /// Steps taken.
+    pub n_steps: u64,
+}
+
+/// Positions and velocities of a relaxation in progress, in the kernel's layout.
+///
+/// The method is `topo_core::Fire`'s, written in two passes over memory: the molecular field with the sums that decide on the next
+/// step, and the step itself.
+pub(crate) struct Relaxation<'a, T> {
+    kernel: &'a Kernel<T>,
+    pub q: Vec<T>,
+    pub velocity: Vec<T>,
+    force: Vec<T>,
+    pub clock: Clock,
+    longest: f64,
+}
+
+impl<'a, T: Real> Relaxation<'a, T> {
+    /// A relaxation at rest, from nothing.
+    pub(crate) fn new(kernel: &'a Kernel<T>) -> Self {
+        let n = kernel.array_length();
+        // The semi-implicit scheme is stable below twice the inverse of the highest frequency.
+        let longest = 0.95 * 2.0 / kernel.stiffest_relaxation().sqrt();
+        Self {
+            kernel,
+            q: vec![T::of(0.0); n],
+            velocity: vec![T::of(0.0); n],
+            force: vec![T::of(0.0); n],
+            clock: Clock {
+                dt: 0.3 * longest,
+                mixing: MIXING_START,
+                n_downhill: 0,
+                n_steps: 0,
+            },
+            longest,
+        }
+    }
+
+    /// Starts from a field in the layout of states.
+    pub(crate) fn set(&mut self, flat: &[f64]) {
+        self.kernel.spread(flat, &mut self.q);
+    }
+
+    /// Goes on from what an earlier one had reached.
+    pub(crate) fn restore(&mut self, q: Vec<T>, velocity: Vec<T>, clock: Clock) {
+        if q.len() == self.q.len() && velocity.len() == self.q.len() {
+            self.q = q;
+            self.velocity = velocity;
+            self.clock = clock;
+        }
+    }
+
+    /// Takes one step and gives the root mean square of the molecular field before it; NaN when the field is not finite.
+    pub(crate) fn step(&mut self) -> f64 {
+        let what = Combination {
+            on_q: 0.0,
+            on_old: 0.0,
+            on_field: 1.0,
+            inputs: [(0.0, &self.velocity[..])],
+            relaxing: true,
+        };
+        let [ff, fv, vv, residual] =
+            self.kernel
+                .combine::<false, 1, true>(&self.q, &what, &mut self.force);
+        let rms = (residual / self.kernel.domain.total_mass.max(1.0)).sqrt();
+        if !rms.is_finite() || ff == 0.0 {
+            return rms;
+        }
+        let clock = &mut self.clock;
+        clock.n_steps += 1;
+        // x <- x + back v before the velocity is stopped.
+        let (mut back, mut keep) = (0.0, 1.0);
+        if fv > 0.0 {
+            clock.n_downhill += 1;
+            if clock.n_downhill > DELAY {
+                clock.dt = (clock.dt * GROWTH).min(self.longest);
+                clock.mixing *= MIXING_SHRINK;
+            }
+        } else if clock.n_steps > 1 {
+            back = -0.5 * clock.dt;
+            keep = 0.0;
+            clock.n_downhill = 0;
+            clock.dt = (clock.dt * SHRINK).max(0.02 * self.longest);
+            clock.mixing = MIXING_START;
+        }
+        let dt = clock.dt;
+        // |v + dt f|, v being stopped or not.
+        let speed = (keep * (vv + 2.0 * dt * fv) + dt * dt * ff).max(0.0).sqrt();
+        let a = clock.mixing;
+        let on_velocity = T::of((1.0 - a) * keep);
+        let on_force = T::of((1.0 - a) * dt + a * speed / ff.sqrt());
+        let (forth, back) = (T::of(dt), T::of(back));
+        self.kernel
+            .for_each3(&mut self.q, &mut self.velocity, &self.force, |x, v, f| {
+                let next = on_velocity * *v + on_force * f;
+                *x = *x + (back * *v + forth * next);
+                *v = next;
+            });
+        rms
+    }
+
+    /// Molecular field at the present positions is not kept: gives the field away.
+    pub(crate) fn into_q(self) -> Vec<T> {
+        self.q
+    }
+
+    /// Bytes of the arrays.
+    pub(crate) fn n_bytes(&self) -> u64 {
+        (3 * self.q.len() * size_of::<T>()) as u64
+    }
+}
+
+impl<T: Real> Kernel<T> {
+    /// Upper bound of the largest eigenvalue of the second derivative of the energy, per volume, for scaled special cells.
+    pub(crate) fn stiffest_relaxation(&self) -> f64 {
+        self.stiffest_with(12.0 + self.domain.stiffest_wall())
+    }
+
+    /// Upper bound of the largest eigenvalue of the second derivative of the energy, per volume.
+    pub(crate) fn stiffest(&self) -> f64 {
+        self.stiffest_with(self.domain.stiffest())
+    }
+
+    fn stiffest_with(&self, laplacian: f64) -> f64 {
+        let h = self.domain.grid.spacing();
+        let m = self.material();
+        let order = m.order().max(m.equilibrium_order().unwrap_or(0.0));
+        m.elastic_constant * laplacian / (h * h) + m.largest_bulk_stiffness(order)
+    }
+}

@@ -1,0 +1,100 @@
+//! The degrees of freedom: the tensor field.
+
+use serde::{Deserialize, Serialize};
+
+use crate::tensor::Tensor5;
+use crate::{Grid, NematicError, Particle};
+
+/// The tensor field of a nematic on its grid.
+///
+/// Five components (xx, xy, xz, yy, yz), one after the other, each of n_cells numbers. Cells whose centre lies inside the particle
+/// hold what was there last and mean nothing.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct NematicState {
+    grid: Grid,
+    particle: Option<Particle>,
+    q: Vec<f64>,
+}
+
+impl NematicState {
+    /// A state of given components.
+    ///
+    /// # Errors
+    /// [`NematicError::Length`] unless `q` has 5 n_cells numbers, [`NematicError::NotFinite`] when one of them is not finite.
+    pub fn new(grid: Grid, particle: Option<Particle>, q: Vec<f64>) -> Result<Self, NematicError> {
+        if q.len() != 5 * grid.n_cells() {
+            return Err(NematicError::Length {
+                what: "the tensor field",
+                found: q.len(),
+                expected: 5 * grid.n_cells(),
+            });
+        }
+        if let Some(at) = q.iter().position(|x| !x.is_finite()) {
+            return Err(NematicError::NotFinite {
+                what: "the tensor field",
+                cell: at % grid.n_cells(),
+            });
+        }
+        Ok(Self { grid, particle, q })
+    }
+
+    /// A state whose tensor at each cell centre is `f` of its coordinates.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn from_fn(
+        grid: Grid,
+        particle: Option<Particle>,
+        f: impl Fn([f64; 3]) -> Tensor5,
+    ) -> Result<Self, NematicError> {
+        let (n, [nx, ny, nz]) = (grid.n_cells(), grid.cells());
+        let mut q = vec![0.0; 5 * n];
+        for k in 0..nz {
+            for j in 0..ny {
+                for i in 0..nx {
+                    let tensor = f(grid.centre([i, j, k]));
+                    let cell = grid.index([i, j, k]);
+                    for (c, x) in tensor.into_iter().enumerate() {
+                        q[c * n + cell] = x;
+                    }
+                }
+            }
+        }
+        Self::new(grid, particle, q)
+    }
+
+    /// The grid.
+    pub fn grid(&self) -> &Grid {
+        &self.grid
+    }
+
+    /// The particle, if there is one.
+    pub fn particle(&self) -> Option<&Particle> {
+        self.particle.as_ref()
+    }
+
+    /// All components: 5 n_cells numbers, component by component.
+    pub fn q_tensor(&self) -> &[f64] {
+        &self.q
+    }
+
+    /// All components, to be changed by this crate only.
+    pub(crate) fn q_mut(&mut self) -> &mut [f64] {
+        &mut self.q
+    }
+
+    /// The tensor of a cell.
+    ///
+    /// # Panics
+    /// When there is no such cell.
+    pub fn tensor(&self, cell: usize) -> Tensor5 {
+        let n = self.grid.n_cells();
+        std::array::from_fn(|c| self.q[c * n + cell])
+    }
+
+    /// Whether the centre of cell (i, j, k) lies in the fluid.
+    pub fn is_fluid(&self, ijk: [usize; 3]) -> bool {
+        self.particle
+            .is_none_or(|p| !p.contains_cell(&self.grid, ijk))
+    }
+}
