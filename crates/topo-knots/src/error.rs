@@ -47,9 +47,9 @@ pub enum KnotError {
         /// The largest generator of the word.
         largest: i32,
     },
-    /// The closure is a link.
+    /// Several components instead of one.
     #[error(
-        "the closure of the braid is a link of {n_components} components; only knots (one component) are served"
+        "this is a link of {n_components} components; only knots (one component) are served: give one component at a time"
     )]
     Link {
         /// Number of components.
@@ -61,6 +61,14 @@ pub enum KnotError {
         /// The file.
         path: PathBuf,
         /// Key, value and remedy.
+        problem: String,
+    },
+    /// A file of coordinates could not be understood.
+    #[error("{}: {problem}", path.display())]
+    CurveFile {
+        /// The file.
+        path: PathBuf,
+        /// Line and remedy.
         problem: String,
     },
     /// A file could not be read or written.

@@ -144,6 +144,18 @@ pub fn identify(vertices: &[V], table: &KnotTable) -> Result<KnotType, KnotError
     classify(&mut reducer, table, Care::Handed)
 }
 
+/// A closed curve of the same type with as few vertices as removing them one by one leaves.
+pub(crate) fn shortened(vertices: &[V]) -> Vec<V> {
+    let mut reducer = Reducer::default();
+    reducer.load(vertices, true);
+    reducer.reduce(true, &[]);
+    while reducer.x.len() < 3 {
+        // What is left of an unknot, or of a single point.
+        reducer.x.push(vertices[reducer.x.len()]);
+    }
+    reducer.x
+}
+
 /// How far to go in telling knots apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Care {

@@ -6,6 +6,7 @@ mod goeritz;
 mod jones;
 mod projection;
 
+use crate::identify::shortened;
 use crate::{KnotError, V};
 
 pub(crate) use diagram::Diagram;
@@ -19,6 +20,9 @@ const N_PROJECTIONS: usize = 30;
 const MOST_CROSSINGS: usize = 250;
 /// Crossings up to which all numbers on the way are exact for certain.
 const EXACT_CROSSINGS: usize = 40;
+
+/// Vertices above which a curve is shortened before it is projected: the work of a projection grows with their square.
+const LONGEST_PROJECTED: usize = 5000;
 
 /// Invariants of a closed curve.
 ///
@@ -132,6 +136,13 @@ fn at_minus_one(alexander: &[i64]) -> u64 {
 /// The simplified diagram of the projection with the fewest crossings.
 fn diagram(vertices: &[V]) -> Result<Diagram, KnotError> {
     check_vertices(vertices, true)?;
+    let reduced;
+    let vertices = if vertices.len() > LONGEST_PROJECTED {
+        reduced = shortened(vertices);
+        &reduced
+    } else {
+        vertices
+    };
     let mut diagram = least_crossing(vertices, N_PROJECTIONS, 0).ok_or(KnotError::Degenerate)?;
     diagram.simplify();
     Ok(diagram)

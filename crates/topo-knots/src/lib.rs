@@ -1,12 +1,13 @@
 //! Knot table, braid closures, tight shapes, and knot types from coordinates.
 //!
-//! Reading order: `table` (what is known of a knot), `braid`, `start_file` and `moebius` (curves to start from),
+//! Reading order: `table` (what is known of a knot), `braid`, `curve_file` (coordinates from and to files), `start_file` and `moebius` (curves to start from),
 //! `thickness`, `tighten` (from a loose curve to a tight one, with its certificate), `ideal` (the same, kept on disk),
 //! `invariant` (polynomial, determinant and signature from coordinates) and `identify` (names from coordinates).
 //!
 //! Lengths of tight knots are in units of the tube radius: [`TightKnot::length_over_radius`].
 
 mod braid;
+mod curve_file;
 mod error;
 mod ideal;
 mod identify;
@@ -19,6 +20,9 @@ mod thickness;
 mod tighten;
 
 pub use braid::{closed_braid, n_components};
+pub use curve_file::{
+    CurveComponent, CurveFormat, curve_text, read_components, read_curve, write_curve,
+};
 pub use error::KnotError;
 pub use ideal::ideal;
 pub use identify::{Handedness, KnotType, OpenKnotType, identify, identify_open};

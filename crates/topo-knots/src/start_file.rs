@@ -1,4 +1,4 @@
-//! Start curves from files: a polygon or a Fourier series, as comma-separated numbers under a header.
+//! Start curves from files: a polygon in any format for curves, or a Fourier series as comma-separated numbers under a header.
 
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -6,7 +6,8 @@ use std::path::Path;
 use serde::Serialize;
 use topo_core::Polyline;
 
-use crate::{KnotError, V};
+use crate::curve_file::{only, parse_components};
+use crate::{CurveFormat, KnotError, V};
 
 /// Vertices of a sampled Fourier curve per harmonic.
 const PER_HARMONIC: usize = 24;
@@ -22,12 +23,10 @@ pub enum StartCurve {
 }
 
 impl StartCurve {
-    /// Reads a polygon: header `x,y,z`, then a vertex a line.
+    /// Reads a closed polygon from the text of a curve file.
     pub(crate) fn polygon(path: &Path, text: &str) -> Result<Self, KnotError> {
-        let rows = numbers(path, text, "x,y,z", 3)?;
-        Ok(Self::Polygon(
-            rows.iter().map(|r| V::new(r[0], r[1], r[2])).collect(),
-        ))
+        let components = parse_components(path, text, CurveFormat::of(path)?)?;
+        Ok(Self::Polygon(only(path, components)?.vertices))
     }
 
     /// Reads a Fourier series: header `ax,bx,ay,by,az,bz`, then a harmonic a line, a for cosine, b for sine.

@@ -136,7 +136,8 @@ fn padded(word: &[i32], rng: &mut Pcg64) -> Vec<i32> {
 ///
 /// # Errors
 /// [`KnotError::Setting`] for settings out of range, [`KnotError::PassedThroughItself`] when a start differs in type from
-/// the first one or the winner changes its type, [`KnotError::NotTightened`] when no start leads anywhere.
+/// the first one, [`KnotError::NotTightened`] when no start leads anywhere. A level that fails or changes the type is given up:
+/// the curve before it is returned as not converged.
 ///
 /// # References
 /// `ashton2011`, `rawdon2003`
@@ -169,13 +170,14 @@ pub fn tighten(
             enough: 0.0,
             max_steps: settings.max_steps,
         };
-        let finer =
-            tighten_level(&curve.resampled(n)?, &level).ok_or_else(|| KnotError::NotTightened {
-                knot: name.to_owned(),
-                n_starts: starts.len(),
-                last: format!("the quadratic program failed at {n} vertices"),
-            })?;
-        check_type(name, &finer.curve, &kind, "tightening")?;
+        let finer = tighten_level(&curve.resampled(n)?, &level)
+            .filter(|finer| check_type(name, &finer.curve, &kind, "tightening").is_ok());
+        let Some(finer) = finer else {
+            // The level before is still a tight curve of the right type.
+            tracing::warn!(name, n, "a level failed, the one before it is kept");
+            converged = false;
+            break;
+        };
         n_factorisations += finer.n_factorisations;
         converged = finer.converged;
         curve = finer.curve;

@@ -1,4 +1,4 @@
-//! Bounding boxes of edges in two levels, laid out so that eight are compared at once.
+//! Bounding boxes of edges in levels, laid out so that eight are compared at once.
 
 use crate::V;
 
@@ -91,45 +91,77 @@ impl Level {
     }
 }
 
-/// Boxes of edges and, above them, of runs of eight edges.
+/// Boxes of edges, above them of runs of eight edges, above those of runs of eight runs, until few are left.
 #[derive(Debug, Default)]
 pub(crate) struct EdgeBoxes {
-    edges: Level,
-    runs: Level,
+    /// The edges first.
+    levels: Vec<Level>,
+    n_levels: usize,
 }
+
+/// Boxes on the uppermost level: comparing so many one after the other costs less than another level.
+const MOST_ON_TOP: usize = 64;
 
 impl EdgeBoxes {
     /// Empties all and makes room for `n` edges.
     pub fn reset(&mut self, n: usize) {
-        self.edges.reset(n);
-        self.runs.reset(n.div_ceil(LANES));
+        self.n_levels = 0;
+        let mut n_boxes = n;
+        loop {
+            if self.levels.len() == self.n_levels {
+                self.levels.push(Level::default());
+            }
+            self.levels[self.n_levels].reset(n_boxes);
+            self.n_levels += 1;
+            if self.n_levels > 1 && n_boxes <= MOST_ON_TOP {
+                break;
+            }
+            n_boxes = n_boxes.div_ceil(LANES);
+        }
     }
 
-    /// Sets the box of an edge; the box of its run only grows.
+    /// Sets the box of an edge; the boxes of its runs only grow.
     pub fn set(&mut self, edge: usize, b: &Aabb) {
-        self.edges.set(edge, b);
-        self.runs.grow(edge / LANES, b);
+        self.levels[0].set(edge, b);
+        let mut place = edge;
+        for level in &mut self.levels[1..self.n_levels] {
+            place /= LANES;
+            level.grow(place, b);
+        }
     }
 
     /// Takes an edge out.
     pub fn clear(&mut self, edge: usize) {
-        self.edges.clear(edge);
+        self.levels[0].clear(edge);
     }
 
     /// Whether `blocks` holds for any edge whose box overlaps `b`.
     pub fn any(&self, b: &Aabb, mut blocks: impl FnMut(usize) -> bool) -> bool {
-        for group in (0..self.runs.low[0].len()).step_by(LANES) {
-            let mut runs = self.runs.overlaps(group, b);
-            while runs != 0 {
-                let first = (group + runs.trailing_zeros() as usize) * LANES;
-                runs &= runs - 1;
-                let mut edges = self.edges.overlaps(first, b);
-                while edges != 0 {
-                    if blocks(first + edges.trailing_zeros() as usize) {
-                        return true;
-                    }
-                    edges &= edges - 1;
-                }
+        let top = self.n_levels - 1;
+        (0..self.levels[top].low[0].len())
+            .step_by(LANES)
+            .any(|first| self.any_below(top, first, b, &mut blocks))
+    }
+
+    /// The same among the eight boxes from `first` on of a level.
+    fn any_below(
+        &self,
+        level: usize,
+        first: usize,
+        b: &Aabb,
+        blocks: &mut impl FnMut(usize) -> bool,
+    ) -> bool {
+        let mut hits = self.levels[level].overlaps(first, b);
+        while hits != 0 {
+            let place = first + hits.trailing_zeros() as usize;
+            hits &= hits - 1;
+            let found = if level == 0 {
+                blocks(place)
+            } else {
+                self.any_below(level - 1, place * LANES, b, blocks)
+            };
+            if found {
+                return true;
             }
         }
         false
@@ -142,18 +174,24 @@ mod tests {
 
     #[test]
     fn finds_what_brute_force_finds() {
+        for n in [5, 83, 700, 5000] {
+            check(n);
+        }
+    }
+
+    fn check(n: usize) {
         let point = |k: usize| {
             let s = k as f64;
             V::new((1.7 * s).sin(), (2.3 * s).cos(), (0.9 * s).sin())
         };
-        let boxes: Vec<Aabb> = (0..83)
+        let boxes: Vec<Aabb> = (0..n)
             .map(|k| Aabb::around(&[&point(k), &point(k + 1)], 0.0))
             .collect();
         let mut all = EdgeBoxes::default();
         all.reset(boxes.len());
         boxes.iter().enumerate().for_each(|(k, b)| all.set(k, b));
-        all.clear(11);
-        for query in &boxes {
+        all.clear(3);
+        for query in boxes.iter().step_by(1 + n / 100) {
             let mut found = Vec::new();
             all.any(query, |k| {
                 found.push(k);
@@ -162,7 +200,7 @@ mod tests {
             let overlap =
                 |b: &Aabb| (0..3).all(|k| b.low[k] <= query.high[k] && b.high[k] >= query.low[k]);
             let expected: Vec<usize> = (0..boxes.len())
-                .filter(|&k| k != 11 && overlap(&boxes[k]))
+                .filter(|&k| k != 3 && overlap(&boxes[k]))
                 .collect();
             assert_eq!(found, expected);
         }

@@ -302,3 +302,34 @@ proptest::proptest! {
         proptest::prop_assert_eq!(kind.invariants, Invariants::of(&x).expect("general position"));
     }
 }
+
+/// The tight trefoil with a million vertices, in a time that grows hardly faster than their number.
+#[test]
+fn a_million_vertices_are_named() {
+    let table = KnotTable::builtin();
+    let trefoil = |n: usize| -> Vec<V> {
+        (0..n)
+            .map(|k| std::f64::consts::TAU * k as f64 / n as f64)
+            .map(|t| {
+                let r = 2.0 + (3.0 * t).cos();
+                V::new(r * (2.0 * t).cos(), r * (2.0 * t).sin(), (3.0 * t).sin())
+            })
+            .collect()
+    };
+    let mut per_vertex = Vec::new();
+    for n in [10_000, 1_000_000] {
+        let x = trefoil(n);
+        let mut reducer = Reducer::default();
+        reducer.load(&x, true);
+        reducer.reduce(true, &[]);
+        per_vertex.push(reducer.n_triangles as f64 / n as f64);
+        let kind = identify(&x, &table).expect("a knot");
+        assert_eq!((kind.label(), kind.is_certain()), ("3_1".to_owned(), true));
+        assert_eq!(
+            Invariants::of(&x).expect("a knot").determinant,
+            3,
+            "{n} vertices"
+        );
+    }
+    assert!(per_vertex[1] < 1.5 * per_vertex[0], "{per_vertex:?}");
+}

@@ -7,7 +7,13 @@ use topo_core::Polyline;
 
 use crate::braid::check_word;
 use crate::start_file::StartCurve;
-use crate::{Invariants, Jones, KnotError, closed_braid, jones_polynomial};
+use crate::{
+    Handedness, Invariants, Jones, KnotError, KnotTable, KnotType, V, closed_braid, identify,
+    jones_polynomial,
+};
+
+/// Most vertices of a start curve: many more than any level of the tightening has.
+const LONGEST_START: usize = 4000;
 
 /// Whether a knot differs from its mirror image.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -35,7 +41,7 @@ pub struct KnotEntry {
     pub braid: Vec<i32>,
     /// Further words of the same knot, from whose closures tightening starts too.
     pub other_braids: Vec<Vec<i32>>,
-    /// Least number of crossings of a diagram.
+    /// Least number of crossings of a diagram; of an unnamed knot, those of the simplest diagram found.
     pub crossing_number: u32,
     /// Whether the mirror image is another knot.
     pub chirality: Chirality,
@@ -212,6 +218,83 @@ impl KnotEntry {
             entry.jones = jones_polynomial(entry.start_curve()?.vertices())?;
         }
         Ok(entry)
+    }
+
+    /// An entry for the closure of a braid word.
+    ///
+    /// A knot that is named for certain keeps its entry of the table, and the word becomes one more start; any other is called
+    /// `unnamed` and has the invariants of its own closure.
+    ///
+    /// # Errors
+    /// As [`closed_braid`], and those of [`identify`](crate::identify).
+    ///
+    /// # Validation
+    /// `words_and_curves_become_entries`.
+    pub fn of_braid(word: &[i32], table: &KnotTable) -> Result<Self, KnotError> {
+        let curve = closed_braid(word)?;
+        let (mut entry, known) = Self::of_type(&identify(curve.vertices(), table)?, table)?;
+        if !known {
+            entry.braid = word.to_vec();
+        } else if entry.braid != word {
+            entry.other_braids.push(word.to_vec());
+        }
+        Ok(entry)
+    }
+
+    /// An entry for a closed curve, as [`of_braid`](Self::of_braid) for a word; a curve of many vertices is resampled.
+    ///
+    /// # Errors
+    /// [`KnotError::Curve`] for vertices that coincide, [`KnotError::Mismatch`] if resampling to 4000 vertices changes the type,
+    /// and those of [`identify`](crate::identify).
+    pub fn of_curve(vertices: &[V], table: &KnotTable) -> Result<Self, KnotError> {
+        let (mut entry, known) = Self::of_type(&identify(vertices, table)?, table)?;
+        let mut curve = Polyline::new(vertices.to_vec(), true)?;
+        if vertices.len() > LONGEST_START {
+            curve = curve.resampled(LONGEST_START)?;
+            entry.verify(&curve)?;
+        }
+        if known {
+            // The table's own word is one more start.
+            entry.other_braids.push(entry.braid.clone());
+        }
+        entry.start = Some(StartCurve::Polygon(curve.into_vertices()));
+        Ok(entry)
+    }
+
+    /// The entry of the table for a type, mirrored if need be, or a new one without a start; true if it is of the table.
+    fn of_type(kind: &KnotType, table: &KnotTable) -> Result<(Self, bool), KnotError> {
+        if let ([name], true) = (&kind.names[..], kind.is_certain())
+            && kind.handedness != Handedness::Undecided
+            && let Ok(entry) = table.get(name)
+        {
+            let mirrored = kind.handedness == Handedness::Mirrored;
+            return Ok((
+                if mirrored {
+                    entry.mirror()
+                } else {
+                    entry.clone()
+                },
+                true,
+            ));
+        }
+        let own = Self {
+            name: if kind.is_unknot() { "0_1" } else { "unnamed" }.to_owned(),
+            aliases: Vec::new(),
+            jones: kind.jones.clone(),
+            braid: Vec::new(),
+            other_braids: Vec::new(),
+            crossing_number: kind.n_crossings as u32,
+            chirality: if kind.is_unknot() {
+                Chirality::Amphichiral
+            } else {
+                Chirality::Chiral
+            },
+            invariants: kind.invariants.clone(),
+            length_over_radius: None,
+            source: None,
+            start: None,
+        };
+        Ok((own, false))
     }
 
     /// Whether the knot is a sum of others, such as `3_1#4_1`.

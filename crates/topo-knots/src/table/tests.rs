@@ -1,7 +1,7 @@
 //! The table against its own coordinates, and faults in knot files.
 
 use super::*;
-use crate::{closed_braid, thickness, thickness_brute_force, windowed_half_distance};
+use crate::{V, closed_braid, thickness, thickness_brute_force, windowed_half_distance};
 
 #[test]
 fn builtin_table_is_complete() {
@@ -184,5 +184,37 @@ fn a_folder_adds_knots_and_names_bad_files() {
     assert!(matches!(
         table.with_folder(&folder),
         Err(KnotError::Io { .. })
+    ));
+}
+
+#[test]
+fn words_and_curves_become_entries() {
+    let table = KnotTable::builtin();
+    let of = |word: &[i32]| KnotEntry::of_braid(word, &table).expect("a knot");
+    // The figure-eight knot with a detour, a left-handed trefoil, an unknot, the torus knot T(3, 7).
+    let four = of(&[1, -2, 1, -2, 3, -3, 3]);
+    assert_eq!(four.name, "4_1");
+    assert_eq!(four.other_braids, [vec![1, -2, 1, -2, 3, -3, 3]]);
+    assert_eq!(of(&[-1, -1, -1]).name, "m3_1");
+    assert_eq!(of(&[1]).name, "0_1");
+    let torus = of(&[1, 2].repeat(7));
+    assert_eq!(torus.name, "unnamed");
+    assert_eq!(torus.braid.len(), 14);
+    torus
+        .verify(&torus.start_curve().expect("a curve"))
+        .expect("itself");
+    let dense = closed_braid(&[-1, -1, -1]).expect("a knot");
+    let dense = dense.resampled(9000).expect("resampled");
+    let three = KnotEntry::of_curve(dense.vertices(), &table).expect("a knot");
+    assert_eq!(three.name, "m3_1");
+    assert_eq!(three.start_curve().expect("a curve").n_vertices(), 4000);
+    assert!(matches!(
+        KnotEntry::of_braid(&[1, 1], &table),
+        Err(KnotError::Link { .. })
+    ));
+    let twice = [V::zeros(), V::x(), V::x(), V::y()];
+    assert!(matches!(
+        KnotEntry::of_curve(&twice, &table),
+        Err(KnotError::Curve(_))
     ));
 }
