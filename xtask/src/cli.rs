@@ -4,6 +4,10 @@ use crate::figures::Quality;
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
 
+mod knot;
+
+pub use knot::{IdentifyArgs, KnotArgs, KnotCommand, KnotQuality, TightenArgs};
+
 /// Commands of the topo workspace.
 #[derive(Debug, Parser)]
 #[command(name = "cargo xtask", bin_name = "cargo xtask", version, about)]
@@ -38,6 +42,8 @@ pub enum Command {
     #[command(after_help = "Example:
   cargo xtask compare results results-again")]
     Compare(CompareArgs),
+    /// The knot generator: tighten a knot, name a curve, look at the table.
+    Knot(KnotArgs),
     /// Run every test, doc test and example of the workspace.
     #[command(after_help = "Examples:
   cargo xtask test           everything but the long tests

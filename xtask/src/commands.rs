@@ -6,6 +6,7 @@ mod cargo;
 mod ci;
 mod compare;
 mod figures;
+mod knot;
 mod run;
 mod test;
 
@@ -21,6 +22,7 @@ pub fn dispatch(cli: Cli) -> Result<(), XtaskError> {
         Command::Run(args) => run::run(&args),
         Command::Accuracy(args) => accuracy::run(&args),
         Command::Compare(args) => compare::run(&args),
+        Command::Knot(args) => knot::run(&args),
         Command::Test(args) => test::run(&args),
         Command::Ci => ci::run(),
         Command::Bench(args) => bench::run(&args),

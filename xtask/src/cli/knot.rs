@@ -1,0 +1,138 @@
+//! The command line of `cargo xtask knot`.
+
+use clap::{Args, Subcommand, ValueEnum};
+use std::path::PathBuf;
+
+/// Options of `knot`.
+#[derive(Debug, Args)]
+pub struct KnotArgs {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: KnotCommand,
+    /// Folder with knots of your own, one TOML file each, besides the built-in ones.
+    #[arg(long, value_name = "DIR", global = true)]
+    pub knots: Option<PathBuf>,
+}
+
+/// What to do with knots.
+#[derive(Debug, Subcommand)]
+pub enum KnotCommand {
+    /// Find the tight shape of a knot and certify it.
+    #[command(after_help = "Examples:
+  cargo xtask knot tighten 6_3 --quality fine
+  cargo xtask knot tighten all --quality fine       the whole table
+  cargo xtask knot tighten --braid \"1 -2 1 -2\"
+  cargo xtask knot tighten --curve my-knot.vect --format xyz")]
+    Tighten(TightenArgs),
+    /// Name the knot that a curve in a file is tied as.
+    #[command(after_help = "Examples:
+  cargo xtask knot identify curve.vect
+  cargo xtask knot identify chain.xyz --open --closures 200")]
+    Identify(IdentifyArgs),
+    /// List the knots of the table.
+    List,
+    /// Show all that the table knows of a knot.
+    #[command(after_help = "Example:
+  cargo xtask knot show 8_19")]
+    Show {
+        /// Name or alias, `m` before it for the mirror image.
+        name: String,
+    },
+}
+
+/// Options of `knot tighten`.
+#[derive(Debug, Args)]
+#[group(skip)]
+pub struct TightenArgs {
+    /// Knots of the table, or `all`.
+    #[arg(value_name = "NAME", required_unless_present_any = ["braid", "curve"], conflicts_with_all = ["braid", "curve"])]
+    pub names: Vec<String>,
+    /// A braid word whose closure to tighten, generators from 1, negative ones inverse.
+    #[arg(
+        long,
+        value_name = "WORD",
+        allow_hyphen_values = true,
+        conflicts_with = "curve"
+    )]
+    pub braid: Option<String>,
+    /// A closed curve to start from: .csv, .xyz or .vect.
+    #[arg(long, value_name = "FILE")]
+    pub curve: Option<PathBuf>,
+    /// How fine.
+    #[arg(long, value_enum, default_value_t = KnotQuality::Standard)]
+    pub quality: KnotQuality,
+    /// Check each length by the second method (always done where it is below the published one).
+    #[arg(long)]
+    pub check: bool,
+    /// Folder of the curves, their certificates and the table.
+    #[arg(long, value_name = "DIR", default_value = "results/tight")]
+    pub out: PathBuf,
+    /// Format of the curves: csv, xyz or vect.
+    #[arg(long, value_name = "FORMAT", default_value = "vect", value_parser = ["csv", "xyz", "vect"])]
+    pub format: String,
+    /// Number of threads; all processors when left out.
+    #[arg(long, value_name = "N")]
+    pub jobs: Option<usize>,
+    /// Compute everything anew.
+    #[arg(long)]
+    pub fresh: bool,
+}
+
+/// Options of `knot identify`.
+#[derive(Debug, Args)]
+pub struct IdentifyArgs {
+    /// The curve: .csv, .xyz or .vect.
+    pub file: PathBuf,
+    /// Treat the curve as open, whatever the file says: report the types of many closures.
+    #[arg(long, conflicts_with = "closed")]
+    pub open: bool,
+    /// Treat the curve as closed, whatever the file says.
+    #[arg(long)]
+    pub closed: bool,
+    /// Closures of an open curve.
+    #[arg(long, value_name = "N", default_value_t = 100)]
+    pub closures: usize,
+}
+
+/// How fine a knot is tightened.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum KnotQuality {
+    /// 4 vertices per unit of ropelength: within half a percent.
+    Draft,
+    /// 8 vertices per unit: within a tenth of a percent.
+    Standard,
+    /// 16 vertices per unit and a longer search: within two hundredths of a percent.
+    Fine,
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::cli::{Cli, Command, KnotCommand};
+    use clap::Parser;
+
+    fn parse(words: &[&str]) -> Result<Cli, clap::Error> {
+        Cli::try_parse_from(["xtask", "knot"].iter().chain(words))
+    }
+
+    #[test]
+    fn words_with_negative_letters_are_values() {
+        let cli = parse(&["tighten", "--braid", "-1 2 -1 2", "--knots", "mine"]).unwrap();
+        let Command::Knot(args) = cli.command else {
+            panic!("not knot")
+        };
+        assert_eq!(args.knots.unwrap().to_str(), Some("mine"));
+        let KnotCommand::Tighten(tighten) = args.command else {
+            panic!("not tighten")
+        };
+        assert_eq!(tighten.braid.as_deref(), Some("-1 2 -1 2"));
+    }
+
+    #[test]
+    fn one_source_of_a_knot_is_needed() {
+        assert!(parse(&["tighten"]).is_err());
+        assert!(parse(&["tighten", "3_1", "--braid", "1 1 1"]).is_err());
+        assert!(parse(&["tighten", "--curve", "a.csv", "--braid", "1 1 1"]).is_err());
+        assert!(parse(&["tighten", "3_1", "4_1", "--quality", "fine"]).is_ok());
+        assert!(parse(&["identify", "a.csv", "--open", "--closed"]).is_err());
+    }
+}

@@ -1,0 +1,44 @@
+//! `cargo xtask knot`: the knot generator.
+
+mod identify;
+mod show;
+mod tighten;
+
+use crate::cli::{KnotArgs, KnotCommand};
+use crate::error::XtaskError;
+use std::path::Path;
+use topo_knots::{KnotError, KnotTable};
+
+pub fn run(args: &KnotArgs) -> Result<(), XtaskError> {
+    let table = table(args.knots.as_deref())?;
+    match &args.command {
+        KnotCommand::Tighten(args) => tighten::run(args, &table),
+        KnotCommand::Identify(args) => {
+            print!("{}", identify::report(args, &table)?);
+            Ok(())
+        }
+        KnotCommand::List => {
+            print!("{}", show::list(&table));
+            Ok(())
+        }
+        KnotCommand::Show { name } => {
+            print!("{}", show::entry(table.get(name)?));
+            Ok(())
+        }
+    }
+}
+
+/// The built-in table with the knots of a folder.
+fn table(folder: Option<&Path>) -> Result<KnotTable, XtaskError> {
+    let table = KnotTable::builtin();
+    Ok(match folder {
+        Some(folder) => table.with_folder(folder)?,
+        None => table,
+    })
+}
+
+impl From<KnotError> for XtaskError {
+    fn from(e: KnotError) -> Self {
+        Self::Input(e.to_string())
+    }
+}

@@ -1,0 +1,141 @@
+//! `cargo xtask knot tighten`: tight shapes with their certificates.
+
+use crate::cli::{KnotQuality, TightenArgs};
+use crate::error::XtaskError;
+use crate::interrupt;
+use rayon::prelude::*;
+use serde_json::json;
+use std::path::Path;
+use topo_core::write_atomic_bytes;
+use topo_knots::{
+    KnotEntry, KnotError, KnotTable, TightKnot, TightenSettings, ideal, read_curve, write_curve,
+};
+
+pub(super) fn run(args: &TightenArgs, table: &KnotTable) -> Result<(), XtaskError> {
+    super::super::threads(args.jobs)?;
+    let stop = interrupt::install();
+    let entries = entries(args, table)?;
+    let settings = settings(args.quality);
+    let folder = args.out.as_path();
+    let cache = folder.join("cache");
+    if args.fresh && cache.exists() {
+        std::fs::remove_dir_all(&cache).map_err(|source| XtaskError::File {
+            path: cache.clone(),
+            source,
+        })?;
+    }
+    let made: Vec<Result<String, XtaskError>> = entries
+        .par_iter()
+        .with_max_len(1)
+        .map(|entry| {
+            interrupt::check(&stop)?;
+            let tight = ideal(entry, &settings, Some(&cache))?;
+            let line = write(entry, &tight, args, folder)?;
+            println!("{line}");
+            Ok(line)
+        })
+        .collect();
+    for line in made {
+        line?;
+    }
+    println!("curves and certificates: {}", folder.display());
+    Ok(())
+}
+
+/// The knots that the arguments ask for.
+fn entries(args: &TightenArgs, table: &KnotTable) -> Result<Vec<KnotEntry>, XtaskError> {
+    if let Some(word) = &args.braid {
+        return Ok(vec![KnotEntry::of_braid(&letters(word)?, table)?]);
+    }
+    if let Some(path) = &args.curve {
+        let component = read_curve(path)?;
+        if component.closed == Some(false) {
+            return Err(XtaskError::Input(format!(
+                "{}: the curve is open; only closed curves can be tightened",
+                path.display()
+            )));
+        }
+        return Ok(vec![KnotEntry::of_curve(&component.vertices, table)?]);
+    }
+    if args.names == ["all"] {
+        return Ok(table.iter().cloned().collect());
+    }
+    let entry = |name: &String| Ok(table.get(name)?.clone());
+    args.names.iter().map(entry).collect()
+}
+
+fn letters(word: &str) -> Result<Vec<i32>, XtaskError> {
+    word.split(|c: char| c.is_whitespace() || ",[]".contains(c))
+        .filter(|letter| !letter.is_empty())
+        .map(|letter| {
+            letter.parse().map_err(|_| XtaskError::Argument {
+                key: "--braid",
+                value: word.to_owned(),
+                remedy: format!("`{letter}` is no generator; give integers such as \"1 -2 1 -2\""),
+            })
+        })
+        .collect()
+}
+
+fn settings(quality: KnotQuality) -> TightenSettings {
+    match quality {
+        KnotQuality::Draft => TightenSettings::draft(),
+        KnotQuality::Standard => TightenSettings::standard(),
+        KnotQuality::Fine => TightenSettings::fine(),
+    }
+}
+
+/// Writes curve and certificate; returns a line of numbers.
+fn write(
+    entry: &KnotEntry,
+    tight: &TightKnot,
+    args: &TightenArgs,
+    folder: &Path,
+) -> Result<String, XtaskError> {
+    let path = |extension: &str| folder.join(format!("{}.{extension}", tight.name));
+    write_curve(&path(&args.format), &tight.curve)?;
+    let length = tight.length_over_radius;
+    let excess = entry.length_over_radius.map(|l| 100.0 * (length / l - 1.0));
+    let certificate = &tight.certificate;
+    let record = json!({
+        "knot": tight.name, "vertices": tight.curve.n_vertices(), "length_over_radius": length,
+        "published": entry.length_over_radius, "source": entry.source, "excess_percent": excess,
+        "certificate": certificate, "cpu_seconds": tight.cpu_seconds, "factorisations": tight.n_factorisations,
+    });
+    let text = format!("{record:#}\n");
+    write_atomic_bytes(&path("json"), text.as_bytes()).map_err(KnotError::from)?;
+    let mut line = format!(
+        "{:8} {:5} vertices  L/r {length:9.4}",
+        tight.name,
+        tight.curve.n_vertices()
+    );
+    line += &match (entry.length_over_radius, excess) {
+        (Some(published), Some(excess)) => format!("  published {published:9.4} ({excess:+.4} %)"),
+        _ => "  published   missing           ".to_owned(),
+    };
+    line += &format!(
+        "  Wr {:+.4}  struts {:5}  kinks {:2}  residual {:.4}  {:5.1} CPU s",
+        certificate.writhe,
+        certificate.n_struts,
+        certificate.n_kinks,
+        certificate.residual,
+        tight.cpu_seconds
+    );
+    if !certificate.converged {
+        line += "  NOT CONVERGED: the best curve is kept";
+    }
+    Ok(line)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_are_read_and_faults_named() {
+        assert_eq!(letters("1 -2, 1 -2").unwrap(), [1, -2, 1, -2]);
+        assert_eq!(letters("[1, 1, 1]").unwrap(), [1, 1, 1]);
+        let error = letters("1 -2 a").unwrap_err();
+        assert!(error.to_string().contains("`a`") && error.exit_code() == 2);
+    }
+}
