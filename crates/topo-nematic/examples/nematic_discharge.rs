@@ -1,25 +1,26 @@
 //! Charges a colloid with n_q anchoring, switches the anchoring off and follows the discharge.
 //!
 //! ```text
-//! cargo run --release -p topo-nematic --example nematic_discharge -- [charge] [radius] [spacing] [seed]
+//! cargo run --release -p topo-nematic --example nematic_discharge -- [charge] [radius] [spacing] [seed] [flow: 1]
 //! ```
 
 use std::time::Instant;
 
 use topo_core::Interrupt;
 use topo_nematic::{
-    ChargeSettings, DischargeSettings, NematicAccuracy, NematicBattery, NematicParameters,
-    Progress, RunHooks, SurfacePattern, SwitchSettings,
+    ChargeSettings, DischargeSettings, FlowParameters, NematicAccuracy, NematicBattery,
+    NematicParameters, Progress, RunHooks, SurfacePattern, SwitchSettings,
 };
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let argument =
         |k: usize, default: f64| std::env::args().nth(k).map_or(Ok(default), |a| a.parse());
-    let (charge, radius, spacing, seed) = (
+    let (charge, radius, spacing, seed, flow) = (
         argument(1, 3.0)? as i32,
         argument(2, 10.0)?,
         argument(3, 1.5)?,
         argument(4, 0.05)?,
+        argument(5, 0.0)? > 0.0,
     );
     let parameters = NematicParameters {
         radius,
@@ -73,10 +74,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         switched.start(),
         switched.removed()
     );
-    let run = switched.discharge(
-        &DischargeSettings::default(),
-        &mut RunHooks::new(&interrupt),
-    )?;
+    let settings = DischargeSettings {
+        flow: flow.then(FlowParameters::default),
+        ..Default::default()
+    };
+    let run = switched.discharge(&settings, &mut RunHooks::new(&interrupt))?;
     let report = &run.record.report;
     println!(
         "discharged: {} steps, {} refused, {} evaluations, ledger residual {:.1e}, {}, {:.2} s",
@@ -87,6 +89,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         report.stop,
         clock.elapsed().as_secs_f64()
     );
+    if let Some(flow) = report.flow {
+        println!(
+            "flow:       {} updates, {:?}, largest speed {:.2e}",
+            flow.counters.n_updates, flow.counters, flow.max_speed
+        );
+    }
+    println!("bytes:      {:?}", report.bytes);
     let (curve, unit) = (&run.record.curve, battery.diffusion_time());
     for share in [0.5, 0.9, 0.99, 0.999] {
         let left = (1.0 - share) * run.start;

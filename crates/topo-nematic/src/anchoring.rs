@@ -146,8 +146,12 @@ impl SurfacePattern {
                 .into());
             }
             Self::Charge(_) | Self::Homeotropic => {}
-            Self::Planar { axis } => drop(unit("anchoring.planar.axis", *axis)?),
-            Self::Uniform { director } => drop(unit("anchoring.uniform.director", *director)?),
+            Self::Planar { axis } => {
+                unit("anchoring.planar.axis", *axis)?;
+            }
+            Self::Uniform { director } => {
+                unit("anchoring.uniform.director", *director)?;
+            }
             Self::Table(table) => table.check()?,
         }
         Ok(self)
@@ -228,9 +232,11 @@ impl Plate {
         match self.director {
             PlateDirector::Perpendicular => {}
             PlateDirector::Planar(angle) => {
-                drop(finite(&format!("{name}.director.planar"), angle)?);
+                finite(&format!("{name}.director.planar"), angle)?;
             }
-            PlateDirector::Along(d) => drop(unit(&format!("{name}.director.along"), d)?),
+            PlateDirector::Along(d) => {
+                unit(&format!("{name}.director.along"), d)?;
+            }
         }
         Ok(self)
     }

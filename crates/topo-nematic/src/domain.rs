@@ -230,16 +230,16 @@ impl Domain {
         walls.map(|w| (w.conductance - 2.0).max(0.0)).sum()
     }
 
-    /// Whether each cell is part of the field.
-    pub(crate) fn active(&self) -> Vec<bool> {
-        let mut active = vec![false; self.grid.n_cells()];
+    /// The mass of each cell: its share in the sum of squares of the molecular field; 0 where there is no field.
+    pub(crate) fn masses(&self) -> Vec<f64> {
+        let mut masses = vec![0.0; self.grid.n_cells()];
         for run in &self.runs {
-            active[run.start as usize..(run.start + run.length) as usize].fill(true);
+            masses[run.start as usize..(run.start + run.length) as usize].fill(1.0);
         }
         for special in &self.special {
-            active[special.cell as usize] = true;
+            masses[special.cell as usize] = special.mass;
         }
-        active
+        masses
     }
 
     /// Bytes of the lists.

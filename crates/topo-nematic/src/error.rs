@@ -113,6 +113,9 @@ pub enum NematicError {
         /// Steps taken.
         step: u64,
     },
+    /// The flow could not be set up or solved.
+    #[error(transparent)]
+    Flow(#[from] crate::StokesError),
     /// A checkpoint could not be written or read.
     #[error(transparent)]
     File(#[from] FileError),

@@ -31,7 +31,7 @@ pub use battery::NematicBattery;
 pub use battery::charge::{ChargeSettings, ChargedNematic};
 pub use battery::discharge::{Discharge, DischargeSettings};
 pub use battery::hooks::{Phase, Progress, RunHooks};
-pub use battery::record::{ChargeReport, NematicSample, PhaseReport, RunRecord};
+pub use battery::record::{ChargeReport, FlowReport, NematicSample, PhaseReport, RunRecord};
 pub use battery::switch::{SwitchSettings, SwitchTarget, SwitchedNematic};
 pub use boundary::{Boundary, FreeSurface};
 pub use energy::EnergyParts;

@@ -84,7 +84,9 @@ impl Material {
             }
         }
         match self.surface_order {
-            Some(order) => drop(positive("material.surface-order", order)?),
+            Some(order) => {
+                positive("material.surface-order", order)?;
+            }
             None if self.equilibrium_order().is_none() => {
                 return Err(NematicError::NoNematicPhase {
                     a: self.a,

@@ -55,11 +55,6 @@ impl<T: Real> Stabilised<T> {
         Rkc2Stages::reach(MAX_STAGES) * (1.0 - 1e-12) / (self.mobility * kernel.stiffest())
     }
 
-    /// Forgets the rate, as after the surface or the flow has changed.
-    pub(crate) fn forget(&mut self) {
-        self.rate_known = false;
-    }
-
     /// Makes the rate at the present field known.
     pub(crate) fn update_rate(&mut self, kernel: &Kernel<T>, extra: Option<&dyn ExtraRate<T>>) {
         if !self.rate_known {
@@ -168,9 +163,15 @@ impl<T: Real> Stabilised<T> {
         self.rate_known = true;
     }
 
-    /// Result of the last trial.
-    pub(crate) fn candidate(&self) -> &[T] {
-        &self.last
+    /// Writes the molecular field at the present field to memory that is not in use between steps; gives both.
+    pub(crate) fn with_molecular_field(&mut self, kernel: &Kernel<T>) -> (&[T], &[T]) {
+        kernel.molecular_field(&self.q, &mut self.before);
+        (&self.q, &self.before)
+    }
+
+    /// Forgets the rate: what else moves the field has changed.
+    pub(crate) fn forget_rate(&mut self) {
+        self.rate_known = false;
     }
 
     /// Sum of squares of the molecular field at the last trial.

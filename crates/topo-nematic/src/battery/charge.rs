@@ -21,7 +21,7 @@ pub struct ChargeSettings {
     pub seed_azimuth: f64,
     /// Root mean square of the molecular field that counts as converged.
     pub tolerance: f64,
-    /// Largest change of the order parameter over 50 steps that counts as converged.
+    /// Largest change of the order parameter over 25 steps that counts as converged.
     pub order_tolerance: f64,
     /// Relax on a grid of twice the spacing first. Faster, but a coarse grid may buckle where a fine one does not.
     pub coarse_start: bool,
@@ -66,7 +66,7 @@ pub struct ChargedNematic {
 }
 
 /// Steps between looks at the order parameter.
-const CHECK_EVERY: u64 = 50;
+const CHECK_EVERY: u64 = 25;
 const SCHEMA: &str = "nematic-charge/1";
 
 /// A charge that is not finished.

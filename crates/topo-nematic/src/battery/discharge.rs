@@ -9,11 +9,15 @@ use topo_core::{
 use super::hooks::{Phase, Progress, RunHooks};
 use super::record::{CHANNELS, NematicSample, PhaseReport, RunRecord};
 use super::switch::SwitchedNematic;
+use crate::battery::record::FlowReport;
 use crate::kernel::run::Kernel;
 use crate::memory::ByteAccount;
 use crate::real::Real;
-use crate::stabilised::Stabilised;
-use crate::{EnergyParts, NematicError, NematicState, Precision, order_parameter, ring};
+use crate::stabilised::{ExtraRate, Stabilised};
+use crate::{
+    EnergyParts, FlowCoupling, FlowParameters, NematicError, NematicState, Precision,
+    order_parameter, ring,
+};
 
 /// How far a discharge is followed and how often it is looked at.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -29,6 +33,9 @@ pub struct DischargeSettings {
     pub outputs_per_decade: f64,
     /// Order below which a cell belongs to the defect ring.
     pub ring_threshold: f64,
+    /// The flow; leave it out and none is modelled.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub flow: Option<FlowParameters>,
 }
 
 impl Default for DischargeSettings {
@@ -39,6 +46,7 @@ impl Default for DischargeSettings {
             first_output: 1e-4,
             outputs_per_decade: 8.0,
             ring_threshold: 0.35,
+            flow: None,
         }
     }
 }
@@ -113,7 +121,14 @@ impl SwitchedNematic {
         let battery = &self.charged.battery;
         let (accuracy, material) = (battery.accuracy(), &battery.parameters().material);
         let unit = battery.diffusion_time();
-        let kernel = battery.kernel::<T>(&self.settings.surface(), accuracy.threads);
+        let mut kernel = battery.kernel::<T>(&self.settings.surface(), accuracy.threads);
+        let mut flow = match &settings.flow {
+            None => None,
+            Some(parameters) => {
+                kernel = kernel.without_gaps();
+                Some(CoupledFlow::new(self, &kernel, parameters)?)
+            }
+        };
         let case = format!(
             "{:?} {:?} {:?} {settings:?}",
             battery.parameters(),
@@ -171,7 +186,10 @@ impl SwitchedNematic {
             outputs.due(last.time, run.n_steps.saturating_sub(1));
         }
         let longest = field.longest_step(&kernel);
-        field.update_rate(&kernel, None);
+        if let Some(flow) = &mut flow {
+            flow.update(&kernel, &mut field)?;
+        }
+        field.update_rate(&kernel, extra(&flow));
         let stop = loop {
             if run.curve.time().last().is_none_or(|last| run.time > *last) {
                 let dissipated = [0, 1].map(|c| run.ledger.dissipated(c));
@@ -190,10 +208,10 @@ impl SwitchedNematic {
                     dissipated: [0, 1].map(|c| run.ledger.dissipated(c)),
                     order: order_parameter(&state, material.order()),
                     ring: ring(&state, settings.ring_threshold),
-                    max_speed: None,
+                    max_speed: flow.as_ref().map(|f| f.coupling.max_speed()),
                 };
                 if hooks.wants_samples() {
-                    hooks.show(&sample, &state);
+                    hooks.show(&sample, &state, flow.as_ref().map(|f| &f.coupling));
                 }
                 run.samples.push(sample);
             }
@@ -218,7 +236,7 @@ impl SwitchedNematic {
             run.n_trials += 1;
             let remaining = until - run.time;
             let dt = control.dt().min(longest).min(remaining);
-            let result = field.try_step(&kernel, dt, None).and_then(|error| {
+            let result = field.try_step(&kernel, dt, extra(&flow)).and_then(|error| {
                 let error = error / material.order().max(1e-3);
                 control.judge(error).map(|()| error)
             });
@@ -229,6 +247,13 @@ impl SwitchedNematic {
                         * mean_power(field.square_of_field, field.candidate_square());
                     field.accept();
                     run.ledger.dissipate(0, dissipated);
+                    if let Some(flow) = &mut flow {
+                        let before = flow.coupling.power();
+                        flow.after_step(&kernel, &mut field)?;
+                        field.update_rate(&kernel, Some(&*flow));
+                        let after = flow.coupling.power();
+                        run.ledger.dissipate(1, dt * mean_power(before, after));
+                    }
                     energy = kernel.energy(&field.q);
                     run.ledger.set_stored(&energy.as_array());
                     control.accept(dt, error, 3);
@@ -269,9 +294,10 @@ impl SwitchedNematic {
             bytes: ByteAccount {
                 fields: field.n_bytes(),
                 geometry: kernel.domain.n_bytes(),
-                flow: 0,
+                flow: flow.as_ref().map_or(0, |f| f.coupling.n_bytes() as u64),
             },
             cpu_seconds: clock.seconds(),
+            flow: flow.as_ref().map(CoupledFlow::report),
         };
         Ok(Discharge {
             removed: self.removed(),
@@ -284,6 +310,90 @@ impl SwitchedNematic {
             state,
         })
     }
+}
+
+/// The flow of a discharge and what is remembered of it.
+struct CoupledFlow {
+    coupling: FlowCoupling,
+    max_speed: f64,
+    boundary_residual: f64,
+}
+
+impl CoupledFlow {
+    fn new<T: Real>(
+        switched: &SwitchedNematic,
+        kernel: &Kernel<T>,
+        parameters: &FlowParameters,
+    ) -> Result<Self, NematicError> {
+        let battery = &switched.charged.battery;
+        let mut coupling = FlowCoupling::new(
+            battery.grid(),
+            battery.particle(),
+            &battery.parameters().material,
+            parameters,
+        )?;
+        // The energy weighs the molecular field by these masses, and so must the force.
+        coupling.set_weights(&kernel.domain.masses());
+        Ok(Self {
+            coupling,
+            max_speed: 0.0,
+            boundary_residual: 0.0,
+        })
+    }
+
+    fn update<T: Real>(
+        &mut self,
+        kernel: &Kernel<T>,
+        field: &mut Stabilised<T>,
+    ) -> Result<(), NematicError> {
+        let (q, h) = field.with_molecular_field(kernel);
+        self.coupling.update(q, h)?;
+        self.remember(field);
+        Ok(())
+    }
+
+    fn after_step<T: Real>(
+        &mut self,
+        kernel: &Kernel<T>,
+        field: &mut Stabilised<T>,
+    ) -> Result<(), NematicError> {
+        let (q, h) = if self.coupling.is_due() {
+            field.with_molecular_field(kernel)
+        } else {
+            // Only the step is counted.
+            (&field.q[..], &field.q[..])
+        };
+        if self.coupling.after_step(q, h)? {
+            self.remember(field);
+        }
+        Ok(())
+    }
+
+    fn remember<T: Real>(&mut self, field: &mut Stabilised<T>) {
+        field.forget_rate();
+        self.max_speed = self.max_speed.max(self.coupling.max_speed());
+        let residual = self.coupling.boundary_residual();
+        self.boundary_residual = self.boundary_residual.max(residual);
+    }
+
+    fn report(&self) -> FlowReport {
+        FlowReport {
+            solver: self.coupling.solver(),
+            counters: self.coupling.counters(),
+            max_speed: self.max_speed,
+            boundary_residual: self.boundary_residual,
+        }
+    }
+}
+
+impl<T: Real> ExtraRate<T> for CoupledFlow {
+    fn add_rate(&self, q: &[T], rate: &mut [T]) {
+        self.coupling.add_rate(q, rate);
+    }
+}
+
+fn extra<T: Real>(flow: &Option<CoupledFlow>) -> Option<&dyn ExtraRate<T>> {
+    flow.as_ref().map(|f| f as &dyn ExtraRate<T>)
 }
 
 /// Mean of a power that decays exponentially from one value to the other.

@@ -8,7 +8,7 @@ use serde::de::DeserializeOwned;
 use topo_core::{Interrupt, load_checkpoint, save_checkpoint};
 
 use super::record::NematicSample;
-use crate::{NematicError, NematicState};
+use crate::{FlowCoupling, NematicError, NematicState};
 
 /// Which phase a run is in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -35,7 +35,7 @@ pub struct Progress {
 }
 
 type ProgressFn<'a> = dyn FnMut(&Progress) + 'a;
-type SampleFn<'a> = dyn FnMut(&NematicSample, &NematicState) + 'a;
+type SampleFn<'a> = dyn FnMut(&NematicSample, &NematicState, Option<&FlowCoupling>) + 'a;
 
 /// Hooks of a run; none of them changes its result.
 pub struct RunHooks<'a> {
@@ -66,7 +66,7 @@ impl<'a> RunHooks<'a> {
         self
     }
 
-    /// With a function that sees each sample of a discharge and its state.
+    /// With a function that sees each sample of a discharge, its state, and the flow if there is one.
     pub fn with_samples(mut self, samples: &'a mut SampleFn<'a>) -> Self {
         self.samples = Some(samples);
         self
@@ -94,9 +94,14 @@ impl<'a> RunHooks<'a> {
         self.samples.is_some()
     }
 
-    pub(crate) fn show(&mut self, sample: &NematicSample, state: &NematicState) {
+    pub(crate) fn show(
+        &mut self,
+        sample: &NematicSample,
+        state: &NematicState,
+        flow: Option<&FlowCoupling>,
+    ) {
         if let Some(f) = &mut self.samples {
-            f(sample, state);
+            f(sample, state, flow);
         }
     }
 

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use topo_core::{Counters, DischargeCurve, Ledger, RejectionCounts, StopReason};
 
 use crate::memory::ByteAccount;
-use crate::{EnergyParts, OrderParameter, Ring};
+use crate::{EnergyParts, FlowCounters, OrderParameter, Ring};
 
 /// Channels by which energy is dissipated, as tables name them.
 pub(crate) const CHANNELS: [&str; 2] = ["rotation", "viscous"];
@@ -54,6 +54,19 @@ pub struct NematicSample {
     pub max_speed: Option<f64>,
 }
 
+/// What the flow of a discharge took.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct FlowReport {
+    /// Which solver.
+    pub solver: &'static str,
+    /// Its work.
+    pub counters: FlowCounters,
+    /// Largest speed at any update, in xi_N/tau_N.
+    pub max_speed: f64,
+    /// Largest velocity left on the particle's boundary at any update, relative to that without the particle.
+    pub boundary_residual: f64,
+}
+
 /// Counters and guards of a discharge.
 #[derive(Debug, Clone, Serialize)]
 pub struct PhaseReport {
@@ -75,6 +88,9 @@ pub struct PhaseReport {
     pub bytes: ByteAccount,
     /// Processor seconds of the calling thread.
     pub cpu_seconds: f64,
+    /// The flow; none if none was modelled.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub flow: Option<FlowReport>,
 }
 
 /// What a discharge leaves behind.

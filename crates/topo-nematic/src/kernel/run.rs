@@ -68,6 +68,12 @@ impl<T: Real> Kernel<T> {
         }
     }
 
+    /// The same kernel on arrays without gaps between components, as the flow reads them.
+    pub(crate) fn without_gaps(mut self) -> Self {
+        self.stride = self.domain.grid.n_cells();
+        self
+    }
+
     /// Length of the arrays that passes read and write.
     pub(crate) fn array_length(&self) -> usize {
         5 * self.stride

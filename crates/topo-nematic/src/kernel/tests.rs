@@ -119,18 +119,7 @@ fn molecular_field_is_the_gradient_of_the_energy() {
         let h = field_of(&kernel, &q);
         let mut direction: Vec<f64> = rough(n);
         direction.rotate_left(7);
-        let mut mass = vec![0.0; n];
-        kernel
-            .domain
-            .active()
-            .iter()
-            .zip(&mut mass)
-            .for_each(|(a, m)| *m = f64::from(u8::from(*a)));
-        kernel
-            .domain
-            .special
-            .iter()
-            .for_each(|s| mass[s.cell as usize] = s.mass);
+        let mass = kernel.domain.masses();
         let at = |x: &[f64], cell: usize| -> Tensor5 { std::array::from_fn(|c| x[c * n + cell]) };
         let slope: f64 = (0..n)
             .map(|cell| {
@@ -209,7 +198,7 @@ fn combinations_are_what_their_factors_say_in_place_and_at_ragged_ends() {
             relaxing: false,
         };
         kernel.combine::<true, 2, false>(&q, &what, &mut out);
-        let active = kernel.domain.active();
+        let active: Vec<bool> = kernel.domain.masses().iter().map(|m| *m > 0.0).collect();
         for i in 0..5 * n {
             let wanted = if active.get(i % n) == Some(&true) {
                 (0.3 - 0.4) * q[i] - 0.2 * old[i] + 1.1 * h[i] + 0.7 * x[i]
