@@ -5,6 +5,7 @@
 mod anchoring;
 mod battery;
 mod boundary;
+mod defects;
 mod domain;
 mod energy;
 mod error;
@@ -24,6 +25,7 @@ mod ring;
 mod stabilised;
 mod state;
 mod stokes;
+mod surface;
 mod tensor;
 
 pub use anchoring::{Anchoring, DirectorTable, Plate, PlateDirector, SurfacePattern};
@@ -34,6 +36,7 @@ pub use battery::hooks::{Phase, Progress, RunHooks};
 pub use battery::record::{ChargeReport, FlowReport, NematicSample, PhaseReport, RunRecord};
 pub use battery::switch::{SwitchSettings, SwitchTarget, SwitchedNematic};
 pub use boundary::{Boundary, FreeSurface};
+pub use defects::{CrossSection, DefectLine, defect_lines, director_field, order_field};
 pub use energy::EnergyParts;
 pub use error::NematicError;
 pub use flow::{FlowCounters, FlowCoupling, FlowParameters, Stored};
@@ -50,6 +53,7 @@ pub use state::NematicState;
 pub use stokes::{
     Drive, FaceSites, MacField, NoSlip, NoSlipReport, Spectral, StokesError, StokesSolver,
 };
+pub use surface::{TriangleMesh, VolumeSlice, isosurface, volume_slice};
 pub use tensor::{
     N_COMPONENTS, Tensor5, contract, largest_eigenvalue, matrix, order_and_director,
     square_traceless, uniaxial,
