@@ -1,5 +1,7 @@
 //! Where commands meet the physics: the tables behind figures, and a user's own scene.
 
+mod nematic;
+
 use crate::error::XtaskError;
 use crate::figures::Quality;
 use crate::interrupt;
@@ -9,8 +11,9 @@ use std::path::Path;
 use std::sync::OnceLock;
 use std::time::Instant;
 use topo_analysis::{
-    ACCURACY_CASES, AnalysisError, Cuts, ElasticScene, Event, Preset, SweepReport, SweepSettings,
-    measure_accuracy, quantile, run_sweep, tight_shapes, with_jobs, write_knots, write_table,
+    ACCURACY_CASES, AnalysisError, Cuts, ElasticScene, Event, NematicScene, Preset, Scene,
+    SweepReport, SweepSettings, measure_accuracy, quantile, run_sweep, tight_shapes, with_jobs,
+    write_knots, write_table,
 };
 use topo_core::Interrupt;
 use topo_knots::KnotTable;
@@ -28,6 +31,8 @@ pub struct Order<'a> {
     pub fresh: bool,
     /// Whether the elastic sweep is needed.
     pub elastic: bool,
+    /// Whether the nematic sweep is needed.
+    pub nematic: bool,
     /// Whether the table of knots is needed.
     pub knots: bool,
 }
@@ -73,13 +78,13 @@ pub fn tables(
             .wall_seconds
             .insert("knots".to_owned(), start.elapsed().as_secs_f64());
     }
+    let settings = SweepSettings {
+        out: order.results.to_owned(),
+        jobs: order.jobs,
+        fresh: order.fresh,
+        interrupt: stop.clone(),
+    };
     if order.elastic {
-        let settings = SweepSettings {
-            out: order.results.to_owned(),
-            jobs: order.jobs,
-            fresh: order.fresh,
-            interrupt: stop.clone(),
-        };
         let start = Instant::now();
         let report = sweep(&scene, &table, &settings)?;
         provenance
@@ -95,6 +100,18 @@ pub fn tables(
             "friction variants".to_owned(),
             start.elapsed().as_secs_f64(),
         );
+    }
+    if order.nematic {
+        let start = Instant::now();
+        let scene = NematicScene::published(preset(order.quality));
+        let report = nematic::sweep(&scene, &settings)?;
+        let radius = format!("radius {} ξ_N", scene.nematic.radius);
+        provenance.presets.insert("Colloid".to_owned(), radius);
+        let runs = format!("{} computed, {} reused", report.n_computed, report.n_reused);
+        provenance.presets.insert("Nematic runs".to_owned(), runs);
+        provenance
+            .wall_seconds
+            .insert("nematic sweep".to_owned(), start.elapsed().as_secs_f64());
     }
     Ok(())
 }
@@ -167,7 +184,24 @@ pub fn accuracy(preset: Preset, settings: &SweepSettings) -> Result<(), XtaskErr
 
 /// Runs a user's scene and prints its table.
 pub fn scene(file: &Path, cuts: Option<&str>, settings: &SweepSettings) -> Result<(), XtaskError> {
-    let mut scene = ElasticScene::read(file)?;
+    match Scene::read(file)? {
+        Scene::Elastic(scene) => elastic_scene(*scene, cuts, settings),
+        Scene::Nematic(scene) => match cuts {
+            None => nematic::scene(&scene, settings),
+            Some(text) => Err(XtaskError::Argument {
+                key: "--cuts",
+                value: text.to_owned(),
+                remedy: "a nematic scene has nothing to cut; leave it out".to_owned(),
+            }),
+        },
+    }
+}
+
+fn elastic_scene(
+    mut scene: ElasticScene,
+    cuts: Option<&str>,
+    settings: &SweepSettings,
+) -> Result<(), XtaskError> {
     if let Some(text) = cuts {
         scene.cuts = Cuts::try_from(text.to_owned()).map_err(|remedy| XtaskError::Argument {
             key: "--cuts",

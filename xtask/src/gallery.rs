@@ -50,7 +50,8 @@ fn page(
          <title>Topological batteries: figures</title><style>{}{STYLE}{}</style></head><body><main>\n\
          <h1>Topological batteries: figures</h1>\n\
          <p>Knotted elastic fibres store energy when they are twisted and fused, and give it back when \
-         they are cut. {quality} quality; every number below is read from the tables beside this page.</p>\n<nav>",
+         they are cut; nematic colloids store it in a patterned anchoring and give it back when that is \
+         switched off. {quality} quality; every number below is read from the tables beside this page.</p>\n<nav>",
         font::style(),
         viewer::STYLE
     );

@@ -7,6 +7,8 @@ use std::time::{Duration, Instant};
 
 /// Shortest time between two plain lines.
 const PAUSE: Duration = Duration::from_secs(5);
+/// Shortest time between two plain lines about a part at work.
+const LONG_PAUSE: Duration = Duration::from_secs(20);
 
 /// Progress of a stage with a known number of parts; shared between threads.
 #[derive(Debug)]
@@ -65,6 +67,19 @@ impl Progress {
                 "{}",
                 line(&self.label, plain.done, self.n, self.start.elapsed(), what)
             );
+        }
+    }
+
+    /// Where a long part is.
+    pub fn working(&self, what: &str) {
+        if let Some(bar) = &self.bar {
+            bar.set_message(what.to_owned());
+            return;
+        }
+        let mut plain = self.plain.lock().unwrap_or_else(|e| e.into_inner());
+        if plain.said.elapsed() >= LONG_PAUSE {
+            plain.said = Instant::now();
+            eprintln!("{}: {what}", self.label);
         }
     }
 

@@ -44,6 +44,14 @@ pub enum AnalysisError {
         /// Why.
         source: topo_rod::RodError,
     },
+    /// The nematic refuses its parameters.
+    #[error("{case}: {source}")]
+    Nematic {
+        /// Which case.
+        case: String,
+        /// Why.
+        source: topo_nematic::NematicError,
+    },
     /// A knot is unknown, or its shape cannot be had.
     #[error(transparent)]
     Knot(#[from] topo_knots::KnotError),

@@ -1,9 +1,11 @@
 //! From scenes to discharge times, knot timelines, ensembles and resonances.
 //!
-//! Reading order: [`ElasticScene`] (what a TOML file says) → [`run_sweep`] (its cases, in parallel, resumable) → [`SweepRow`]
-//! (the table) → [`DischargeTimes`], [`Timeline`], [`ensembles`], [`resonances`] (what the table says).
+//! Reading order: [`Scene`] (what a TOML file says): [`ElasticScene`] → [`run_sweep`] (its cases, in parallel, resumable) → [`SweepRow`]
+//! (the table) → [`DischargeTimes`], [`Timeline`], [`ensembles`], [`resonances`] (what the table says); and [`NematicScene`] →
+//! [`run_nematic_sweep`] → [`NematicRow`] → [`nematic_resonance`].
 //!
-//! Energies are in E_0 = E_b h² L and times in T_0 = 2 L η/(h E_b), with L the row's own length.
+//! Elastic energies are in E_0 = E_b h² L and times in T_0 = 2 L η/(h E_b), with L the row's own length; nematic energies in
+//! L ξ_N and times in τ_N.
 
 mod elastic;
 mod error;
@@ -11,6 +13,7 @@ mod folder;
 mod knots;
 mod nematic;
 mod progress;
+mod scene;
 mod statistics;
 mod table;
 mod timeline;
@@ -26,10 +29,12 @@ pub use error::AnalysisError;
 pub use folder::writable;
 pub use knots::{Shapes, knots_folder, tight_shapes, write_knots};
 pub use nematic::{
-    LinePoint, NematicResonance, NematicRow, NematicSample, SlicePoint, buckling,
-    nematic_resonance, resonance_peak,
+    LinePoint, NEMATIC_SHARES, NematicCase, NematicReport, NematicResonance, NematicRow,
+    NematicSample, NematicScene, SlicePoint, buckling, nematic_resonance, resonance_peak,
+    run_nematic_sweep,
 };
 pub use progress::{Event, SweepSettings, with_jobs};
+pub use scene::Scene;
 pub use statistics::{Spread, median, quantile};
 pub use table::{KnotRow, SweepRow, read_table, write_table};
 pub use timeline::{Timeline, TimelineSettings, TypedSample, UNKNOT};

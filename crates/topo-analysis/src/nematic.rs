@@ -1,7 +1,16 @@
 //! Nematic scenes: colloids, charged, switched and followed; their tables and what these say.
 
+mod case;
+mod file;
+mod late;
 mod resonance;
+mod scene;
+mod snapshot;
+mod sweep;
 mod table;
 
+pub use case::NEMATIC_SHARES;
 pub use resonance::{NematicResonance, buckling, nematic_resonance, resonance_peak};
+pub use scene::{NematicCase, NematicScene};
+pub use sweep::{NematicReport, run_nematic_sweep};
 pub use table::{LinePoint, NematicRow, NematicSample, SlicePoint};

@@ -24,6 +24,13 @@ pub enum Event<'a> {
         /// Its ropelength.
         length_over_radius: f64,
     },
+    /// A case is at work; told often by long ones.
+    Working {
+        /// Its name.
+        name: &'a str,
+        /// Where it is.
+        what: &'a str,
+    },
     /// A case is finished.
     Case {
         /// Its name.

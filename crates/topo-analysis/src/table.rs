@@ -94,6 +94,15 @@ pub struct KnotRow {
     pub cpu_seconds: f64,
 }
 
+/// Adds a warning to a cell of warnings.
+pub(crate) fn push_warning(warnings: &mut String, text: &str) {
+    if !warnings.is_empty() {
+        warnings.push(';');
+    }
+    // `;` separates warnings
+    warnings.push_str(&text.replace(';', ","));
+}
+
 /// Writes rows as CSV with a header, atomically.
 ///
 /// # Errors

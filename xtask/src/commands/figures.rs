@@ -2,7 +2,7 @@
 
 use crate::cli::FiguresArgs;
 use crate::compute;
-use crate::data::Sweep;
+use crate::data::{NematicSweep, Sweep};
 use crate::error::XtaskError;
 use crate::figures::{self, Context, Done};
 use crate::gallery;
@@ -25,6 +25,7 @@ pub fn run(args: &FiguresArgs) -> Result<(), XtaskError> {
         jobs,
         fresh: args.work.fresh,
         elastic: chosen.iter().any(|f| f.table.starts_with("elastic/")),
+        nematic: chosen.iter().any(|f| f.table.starts_with("nematic/")),
         knots: chosen.iter().any(|f| f.table.starts_with("knots/")),
     };
     compute::tables(&order, &interrupt, &mut record)?;
@@ -91,6 +92,11 @@ pub fn run(args: &FiguresArgs) -> Result<(), XtaskError> {
         for case in &Sweep::read(results)?.cases {
             case.cuts.iter().for_each(|c| record.warn(&c.warnings));
         }
+    }
+    if order.nematic {
+        let sweep = NematicSweep::read(results)?;
+        let rows = sweep.rows.iter().chain(&sweep.flowing);
+        rows.for_each(|r| record.warn(&r.warnings));
     }
     record.write(results)?;
     gallery::write(results, &shown, &shown_movies, args.quality, &record)?;

@@ -13,7 +13,7 @@ use super::record::{MadeCase, write_case};
 use super::scene::{ElasticCase, ElasticScene};
 use crate::AnalysisError;
 use crate::folder::identity;
-use crate::table::SweepRow;
+use crate::table::{SweepRow, push_warning};
 use crate::timeline::Timeline;
 use crate::times::{DischargeTimes, ELASTIC_SHARES};
 
@@ -204,14 +204,6 @@ pub(crate) fn run(
         return Err(error);
     }
     Ok(Some(rows))
-}
-
-fn push_warning(warnings: &mut String, text: &str) {
-    if !warnings.is_empty() {
-        warnings.push(';');
-    }
-    // `;` separates warnings
-    warnings.push_str(&text.replace(';', ","));
 }
 
 fn phase_warnings(phase: &str, report: &PhaseReport, warnings: &mut String) {

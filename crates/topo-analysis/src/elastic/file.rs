@@ -26,6 +26,7 @@ use topo_rod::{
 use super::choices::{Cuts, Names, Numbers, Preset};
 use super::scene::ElasticScene;
 use crate::AnalysisError;
+use crate::scene::read_text;
 use crate::timeline::TimelineSettings;
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -113,11 +114,7 @@ impl ElasticScene {
     /// # Errors
     /// File, line, key and what would be right.
     pub fn read(path: &Path) -> Result<Self, AnalysisError> {
-        let text = std::fs::read_to_string(path).map_err(|source| AnalysisError::Unreadable {
-            path: path.to_owned(),
-            source,
-        })?;
-        Self::parse(&text, path)
+        Self::parse(&read_text(path)?, path)
     }
 
     /// Reads a scene from a text; `path` names it in messages.

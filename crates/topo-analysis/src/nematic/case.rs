@@ -1,0 +1,273 @@
+//! One case: charge a colloid, switch its anchoring, follow the discharge, and write a folder.
+
+use std::path::Path;
+
+use serde_json::json;
+use topo_core::{Interrupt, StopReason, load_checkpoint, save_checkpoint, write_atomic_bytes};
+use topo_nematic::{
+    ChargedNematic, Discharge, DischargeSettings, FlowCoupling, NematicAccuracy, NematicBattery,
+    NematicState, Phase, Progress, RunHooks, Threads,
+};
+
+use super::late::late_rate;
+use super::scene::{NematicCase, NematicScene};
+use super::snapshot::Kept;
+use super::table::{NematicRow, NematicSample};
+use crate::AnalysisError;
+use crate::folder::{identity, make_folder};
+use crate::table::{push_warning, write_table};
+use crate::times::DischargeTimes;
+
+/// Changes whenever the same scene gives other numbers than before; finished cases of another version are computed again.
+const RESULTS_VERSION: u32 = 1;
+
+/// Shares of the energy whose times a row lists.
+pub const NEMATIC_SHARES: [f64; 4] = [0.5, 0.9, 0.99, 0.999];
+
+/// Seconds between checkpoints: a killed run loses at most twice that.
+const CHECKPOINT_SECONDS: f64 = 25.0;
+
+/// Schema of the checkpoint of snapshots.
+const KEPT: &str = "nematic-snapshots/1";
+
+/// Identity of a case: everything that its numbers depend on.
+pub(super) fn fingerprint(scene: &NematicScene, case: &NematicCase) -> String {
+    // the number of threads changes no bit
+    let accuracy = NematicAccuracy {
+        threads: Threads::One,
+        memory_limit: None,
+        ..scene.accuracy
+    };
+    identity(&json!({
+        "version": RESULTS_VERSION, "case": case, "charge": scene.charge, "switch": scene.switch,
+        "discharge": scene.discharge, "accuracy": accuracy,
+    }))
+}
+
+/// How a case runs.
+pub(super) struct CaseRun<'a> {
+    pub scene: &'a NematicScene,
+    pub case: &'a NematicCase,
+    pub folder: &'a Path,
+    pub interrupt: &'a Interrupt,
+    pub threads: Threads,
+    pub told: &'a (dyn Fn(&Progress) + Sync),
+}
+
+impl CaseRun<'_> {
+    /// Runs the case and writes its folder; `None` when interrupted: then its checkpoint stays.
+    pub fn run(&self) -> Result<Option<NematicRow>, AnalysisError> {
+        let refuse = |source| AnalysisError::Nematic {
+            case: self.scene.blank_row(self.case).case_name(),
+            source,
+        };
+        make_folder(self.folder)?;
+        let accuracy = NematicAccuracy {
+            threads: self.threads,
+            ..self.scene.accuracy
+        };
+        let battery = NematicBattery::new(&self.case.nematic, &accuracy).map_err(refuse)?;
+        let mut tell = |p: &Progress| (self.told)(p);
+        let checkpoint = |phase: &str| self.folder.join(format!("{phase}.checkpoint"));
+        let mut hooks = RunHooks::new(self.interrupt)
+            .with_progress(&mut tell)
+            .with_checkpoint(&checkpoint("charge"), CHECKPOINT_SECONDS);
+        let charged = battery
+            .charge(&self.scene.charge, &mut hooks)
+            .map_err(refuse)?;
+        if self.interrupt.is_requested() {
+            return Ok(None);
+        }
+        let released = charged.switch(&self.scene.switch).map_err(refuse)?;
+        let settings = DischargeSettings {
+            flow: self.case.flow,
+            ..self.scene.discharge.clone()
+        };
+        let (mark, place) = (fingerprint(self.scene, self.case), checkpoint("snapshots"));
+        let mut kept = self.kept(&mark, &place);
+        let mut failed: Option<AnalysisError> = None;
+        let mut see =
+            |s: &topo_nematic::NematicSample, state: &NematicState, flow: Option<&FlowCoupling>| {
+                let share = s.energy.total() / released.start();
+                if failed.is_none() && kept.see(s.time, share, state, flow) {
+                    failed = save_checkpoint(&place, KEPT, &(&mark, &kept))
+                        .err()
+                        .map(AnalysisError::from);
+                }
+            };
+        let mut hooks = RunHooks::new(self.interrupt)
+            .with_progress(&mut tell)
+            .with_samples(&mut see)
+            .with_checkpoint(&checkpoint("discharge"), CHECKPOINT_SECONDS);
+        let run = released.discharge(&settings, &mut hooks).map_err(refuse)?;
+        if let Some(error) = failed {
+            return Err(error);
+        }
+        if run.record.report.stop == StopReason::Interrupted {
+            return Ok(None);
+        }
+        let row = self.row(&battery, &charged, &run);
+        self.write(&charged, &run, &kept, &row)?;
+        // what is finished needs no checkpoint; one that stays behind does no harm
+        let _ = std::fs::remove_file(place);
+        Ok(Some(row))
+    }
+
+    /// Snapshots of an earlier run that was stopped, if they are of this case.
+    fn kept(&self, mark: &str, place: &Path) -> Kept {
+        let found: Result<(String, Kept), _> = load_checkpoint(place, KEPT);
+        match found {
+            Ok((found, kept)) if found == mark => kept,
+            _ => Kept::default(),
+        }
+    }
+
+    fn row(
+        &self,
+        battery: &NematicBattery,
+        charged: &ChargedNematic,
+        run: &Discharge,
+    ) -> NematicRow {
+        let curve = &run.record.curve;
+        let names: Vec<&str> = curve.parts().iter().map(String::as_str).collect();
+        let f_charged = charged.energy().total();
+        let after = DischargeTimes::of(curve, &names, run.start, &NEMATIC_SHARES);
+        let whole = DischargeTimes::of(curve, &names, f_charged, &NEMATIC_SHARES);
+        let at = |times: &DischargeTimes, k: usize| times.at(NEMATIC_SHARES[k]).map(|t| t.value);
+        let ring = charged.ring(RING_ORDER);
+        let (charge, discharge) = (charged.report(), &run.record.report);
+        let flow = discharge.flow.as_ref().map(|f| f.counters);
+        let mut row = NematicRow {
+            f_charged,
+            f_after_switch: run.start,
+            order_parameter: charged.order().magnitude(),
+            ring_radius: ring.as_ref().map(|r| r.radius),
+            ring_mode: ring.as_ref().map(|r| r.mode() as u32),
+            ring_amplitude: ring.as_ref().map(|r| r.amplitude()),
+            t50: at(&after, 0),
+            t90: at(&after, 1),
+            t99: at(&after, 2),
+            t999: at(&after, 3),
+            t50_charged: at(&whole, 0),
+            t90_charged: at(&whole, 1),
+            t99_charged: at(&whole, 2),
+            t999_charged: at(&whole, 3),
+            late_rate: late_rate(curve, run.start),
+            steps: discharge.n_steps,
+            evaluations: charge.n_steps + discharge.counters.n_rate_evaluations,
+            stokes_updates: flow.map_or(0, |f| f.n_updates),
+            stokes_iterations: flow.map_or(0, |f| f.n_boundary_solves),
+            cpu_seconds: charge.cpu_seconds + discharge.cpu_seconds,
+            peak_bytes: charge.bytes.total().max(discharge.bytes.total()),
+            ..self.scene.blank_row(self.case)
+        };
+        for text in battery.warnings() {
+            push_warning(&mut row.warnings, text);
+        }
+        if !charge.is_converged() {
+            push_warning(
+                &mut row.warnings,
+                &format!(
+                    "charge not converged: {}, rms H {:.1e}",
+                    charge.stop, charge.rms_field
+                ),
+            );
+        }
+        if !discharge.stop.is_success() {
+            push_warning(
+                &mut row.warnings,
+                &format!("discharge stopped: {}", discharge.stop),
+            );
+        }
+        if discharge.stop == StopReason::ReachedTime {
+            push_warning(
+                &mut row.warnings,
+                "discharge not finished in the longest time followed",
+            );
+        }
+        if discharge.ledger_residual > 0.01 {
+            push_warning(
+                &mut row.warnings,
+                &format!(
+                    "energy account open by {:.1} %",
+                    100.0 * discharge.ledger_residual
+                ),
+            );
+        }
+        row
+    }
+
+    fn write(
+        &self,
+        charged: &ChargedNematic,
+        run: &Discharge,
+        kept: &Kept,
+        row: &NematicRow,
+    ) -> Result<(), AnalysisError> {
+        let folder = self.folder;
+        let mut all = Kept::default();
+        all.keep(None, charged.state(), None);
+        all.lines.extend(kept.lines.iter().cloned());
+        all.slices.extend(kept.slices.iter().cloned());
+        write_table(&folder.join("lines.csv"), &all.lines)?;
+        write_table(&folder.join("slices.csv"), &all.slices)?;
+        let series: Vec<NematicSample> = run.record.samples.iter().map(sample).collect();
+        write_table(&folder.join("series.csv"), &series)?;
+        let json = json!({
+            "schema": "topo-nematic-case/1",
+            "fingerprint": fingerprint(self.scene, self.case),
+            "case": self.case,
+            "scene": self.scene,
+            "versions": { "topo": env!("CARGO_PKG_VERSION"), "results": RESULTS_VERSION },
+            "units": { "length": "xi_N", "time": "tau_N", "energy": "L xi_N" },
+            "charge": charged.report(),
+            "energy_charged": charged.energy(),
+            "order_charged": charged.order(),
+            "ring_charged": charged.ring(RING_ORDER),
+            "energy_removed_by_switch": run.removed,
+            "energy_after_switch": run.start,
+            "discharge": run.record.report,
+            "ledger_residual": run.record.report.ledger_residual,
+            "rows": [row],
+            "warnings": row.warnings,
+            "timings": { "cpu_seconds": row.cpu_seconds },
+        });
+        // written last: a folder with this file is complete
+        let mut text = serde_json::to_string_pretty(&json).unwrap_or_default();
+        text.push('\n');
+        Ok(write_atomic_bytes(
+            &folder.join("run.json"),
+            text.as_bytes(),
+        )?)
+    }
+}
+
+/// Degree of order whose isosurface encloses a defect line.
+const RING_ORDER: f64 = 0.35;
+
+fn sample(s: &topo_nematic::NematicSample) -> NematicSample {
+    NematicSample {
+        time: s.time,
+        energy: s.energy.total(),
+        dissipated_rotation: s.dissipated[0],
+        dissipated_flow: s.dissipated[1],
+        order_x: s.order.tilt[0],
+        order_y: s.order.tilt[1],
+        tilt: s.order.director_magnitude(),
+        ring_radius: s.ring.as_ref().map(|r| r.radius),
+        max_speed: s.max_speed,
+        power: None,
+    }
+}
+
+/// One line of progress.
+pub(super) fn told(p: &Progress) -> String {
+    let energy = p.energy.map_or(String::new(), |f| format!(", F {f:.4e}"));
+    match p.phase {
+        Phase::Charge => format!(
+            "charging: step {}, rms H {:.1e}{energy}",
+            p.step, p.rms_field
+        ),
+        Phase::Discharge => format!("discharging: step {}, t {:.3e}{energy}", p.step, p.time),
+    }
+}

@@ -1,0 +1,133 @@
+//! A nematic experiment and the cases it stands for.
+
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+use topo_nematic::{
+    ChargeSettings, DischargeSettings, FlowParameters, NematicAccuracy, NematicParameters,
+    SurfacePattern, SwitchSettings,
+};
+
+use super::table::NematicRow;
+use crate::elastic::Preset;
+
+/// The q that the draft preset shows with flow.
+const DRAFT_FLOW: u32 = 4;
+
+/// A nematic experiment: which colloid, how charged, how switched, with flow or without.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct NematicScene {
+    /// Folder of its tables below the output folder.
+    pub folder: String,
+    /// Windings q of the particle's anchoring; empty: the scene's own pattern.
+    pub charges: Vec<u32>,
+    /// Windings that are discharged with flow besides without; `None`: all with flow only, if there is flow.
+    pub flowing: Option<Vec<u32>>,
+    /// Cell, particle, material; its pattern is replaced by each q.
+    pub nematic: NematicParameters,
+    /// Minimisation of the free energy.
+    pub charge: ChargeSettings,
+    /// What the anchoring is switched to.
+    pub switch: SwitchSettings,
+    /// The relaxation after it.
+    pub discharge: DischargeSettings,
+    /// Flow; `None`: no velocity is modelled.
+    pub flow: Option<FlowParameters>,
+    /// Tolerance, storage and limits.
+    pub accuracy: NematicAccuracy,
+}
+
+/// One charge and its discharge.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct NematicCase {
+    /// Winding of the anchoring, 0 for a pattern without one.
+    pub q: u32,
+    /// Cell, particle with its pattern, material.
+    pub nematic: NematicParameters,
+    /// Flow, if any.
+    pub flow: Option<FlowParameters>,
+}
+
+impl NematicScene {
+    /// The published sweep, q = 1 to 12: at radius 15 without flow but for one q (draft), 25 with flow (standard), and the
+    /// published 52.5 with flow (paper).
+    pub fn published(preset: Preset) -> Self {
+        let (radius, flowing) = match preset {
+            Preset::Draft => (15.0, Some(vec![DRAFT_FLOW])),
+            Preset::Standard => (25.0, Some((1..=12).collect())),
+            Preset::Paper => (52.5, Some((1..=12).collect())),
+        };
+        Self {
+            folder: "nematic".to_owned(),
+            charges: (1..=12).collect(),
+            flowing,
+            nematic: NematicParameters {
+                radius,
+                spacing: 1.5,
+                ..NematicParameters::default()
+            },
+            charge: ChargeSettings::default(),
+            switch: SwitchSettings::default(),
+            discharge: DischargeSettings::default(),
+            flow: Some(FlowParameters::default()),
+            accuracy: NematicAccuracy::default(),
+        }
+    }
+
+    /// The cases of the scene, by q; with flow after without.
+    pub fn cases(&self) -> Vec<NematicCase> {
+        let mut cases = Vec::new();
+        let mut add = |q: Option<u32>| {
+            let mut nematic = self.nematic.clone();
+            if let Some(q) = q {
+                nematic.pattern = SurfacePattern::Charge(q as i32);
+            }
+            let q = match nematic.pattern {
+                SurfacePattern::Charge(q) => q.unsigned_abs(),
+                _ => 0,
+            };
+            let mut case = |flow| {
+                cases.push(NematicCase {
+                    q,
+                    nematic: nematic.clone(),
+                    flow,
+                });
+            };
+            match (&self.flow, &self.flowing) {
+                (None, _) => case(None),
+                (Some(flow), None) => case(Some(flow.clone())),
+                (Some(flow), Some(chosen)) => {
+                    case(None);
+                    if chosen.contains(&q) {
+                        case(Some(flow.clone()));
+                    }
+                }
+            }
+        };
+        if self.charges.is_empty() {
+            add(None);
+        }
+        for &q in &self.charges {
+            add(Some(q));
+        }
+        cases
+    }
+
+    /// Where files with the scene's tables lie below an output folder.
+    pub fn results(&self, out: &Path) -> PathBuf {
+        out.join(&self.folder)
+    }
+
+    /// A row of a case with its settings only.
+    pub(super) fn blank_row(&self, case: &NematicCase) -> NematicRow {
+        NematicRow {
+            radius: case.nematic.radius,
+            spacing: case.nematic.spacing,
+            q: case.q,
+            boundary: case.nematic.boundary.name().to_owned(),
+            precision: self.accuracy.precision.name().to_owned(),
+            flow: if case.flow.is_some() { "on" } else { "off" }.to_owned(),
+            ..NematicRow::default()
+        }
+    }
+}

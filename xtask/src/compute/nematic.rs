@@ -1,0 +1,100 @@
+//! Nematic sweeps: run with progress, told as a table.
+
+use crate::error::XtaskError;
+use crate::progress::Progress;
+use std::sync::OnceLock;
+use topo_analysis::{
+    Event, NematicReport, NematicScene, SweepSettings, nematic_resonance, run_nematic_sweep,
+};
+
+/// Runs a user's scene and prints its table.
+pub fn scene(scene: &NematicScene, settings: &SweepSettings) -> Result<(), XtaskError> {
+    let report = sweep(scene, settings)?;
+    println!(
+        "  q flow  F charged  F after  order  ring/R mode     t50     t90     t99   t99.9  CPU s   MB"
+    );
+    for r in &report.rows {
+        let time = |t: Option<f64>| t.map_or_else(|| format!("{:>7}", "-"), |t| format!("{t:7.2}"));
+        println!(
+            "{:3} {:>4} {:10.2} {:8.2} {:6.4} {:7} {:>4} {} {} {} {} {:6.1} {:4.0}",
+            r.q,
+            r.flow,
+            r.f_charged,
+            r.f_after_switch,
+            r.order_parameter,
+            r.ring_radius
+                .map_or_else(|| "-".to_owned(), |a| format!("{:7.3}", a / r.radius)),
+            r.ring_mode
+                .map_or_else(|| "-".to_owned(), |m| m.to_string()),
+            time(r.t50),
+            time(r.t90),
+            time(r.t99),
+            time(r.t999),
+            r.cpu_seconds,
+            r.peak_bytes as f64 / 1e6
+        );
+        for warning in r.warnings.split(';').filter(|w| !w.is_empty()) {
+            println!("       warning: {warning}");
+        }
+    }
+    for flow in ["off", "on"] {
+        let rows: Vec<_> = report
+            .rows
+            .iter()
+            .filter(|r| r.flow == flow)
+            .cloned()
+            .collect();
+        if rows.len() > 2 {
+            let found = nematic_resonance(&rows);
+            println!(
+                "flow {flow}: q_c = {}, 50 % rate {}, 99.9 % rate largest at q = {}",
+                found.q_c.map_or("none".to_owned(), |q| q.to_string()),
+                if found.half_rate_is_monotonic {
+                    "monotonic"
+                } else {
+                    "not monotonic"
+                },
+                found
+                    .peak_999
+                    .map_or("none".to_owned(), |(q, _)| q.to_string())
+            );
+        }
+    }
+    println!("written to {}", scene.results(&settings.out).display());
+    Ok(())
+}
+
+/// Runs a sweep with progress.
+pub fn sweep(scene: &NematicScene, settings: &SweepSettings) -> Result<NematicReport, XtaskError> {
+    let progress: OnceLock<Progress> = OnceLock::new();
+    let report = run_nematic_sweep(scene, settings, &|event| match event {
+        Event::Begin { n_cases, n_reused } => {
+            if n_reused > 0 {
+                eprintln!("{n_reused} of {n_cases} cases are finished already");
+            }
+            progress.get_or_init(|| Progress::start("nematic", n_cases - n_reused));
+        }
+        Event::Working { name, what } => {
+            if let Some(progress) = progress.get() {
+                progress.working(&format!("{name}: {what}"));
+            }
+        }
+        Event::Case { name, warnings, .. } => {
+            if let Some(progress) = progress.get() {
+                progress.done(name);
+                if !warnings.is_empty() {
+                    progress.note(&format!("warning: {name}: {warnings}"));
+                }
+            }
+        }
+        _ => {}
+    })?;
+    if let Some(progress) = progress.into_inner() {
+        progress.finish();
+    }
+    if report.interrupted {
+        Err(XtaskError::Interrupted)
+    } else {
+        Ok(report)
+    }
+}
