@@ -33,7 +33,10 @@ pub use moebius::relax_moebius;
 pub use start_file::StartCurve;
 pub use table::{Chirality, KnotEntry, KnotTable};
 pub use thickness::{Thickness, thickness, thickness_brute_force, windowed_half_distance};
-pub use tighten::{Centreline, Certificate, TightKnot, TightenSettings, tighten, tighten_entry};
+pub use tighten::{
+    Centreline, Certificate, SecondOpinion, TightKnot, TightenSettings, second_opinion, tighten,
+    tighten_entry,
+};
 
 /// A point or vector in space.
 pub type V = nalgebra::Vector3<f64>;

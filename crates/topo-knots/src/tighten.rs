@@ -1,14 +1,18 @@
 //! Tight knots: several starts, a search for the basin at low resolution, then ever finer polygons.
 
+mod augmented;
 mod certificate;
 mod constraints;
 mod kick;
+mod lbfgs;
 mod level;
 mod qp;
 mod search;
+mod second;
 mod settings;
 
 pub use certificate::Certificate;
+pub use second::{SecondOpinion, second_opinion};
 pub use settings::TightenSettings;
 
 use rand::{RngExt, SeedableRng};
@@ -18,14 +22,21 @@ use topo_core::Polyline;
 
 use crate::moebius::relax_moebius;
 use crate::{Invariants, KnotEntry, KnotError, closed_braid, thickness};
-use level::{Level, tighten_level};
+use level::{LOOSE_REACH, Level, NEAR_REACH, Outcome, tighten_level};
 use topo_core::CpuClock;
 
-/// Vertices and steps of the descent of the Moebius energy that gives the second start.
-const MOEBIUS_EDGES: usize = 320;
+/// Edges, with more if the type was not kept, and steps of the descent of the Moebius energy that gives the second start.
+const MOEBIUS_EDGES: [usize; 2] = [320, 700];
 const MOEBIUS_STEPS: usize = 120;
 /// Cancelling pairs of generators put into a word to vary its embedding.
 const N_PADS: usize = 2;
+
+/// Generators up to which a word gets a further strand; more make long starts.
+const MOST_STRANDS: i32 = 4;
+/// Vertices per unit of ropelength above which a level starts from a curve that is nearly tight.
+const WELL_RESOLVED: f64 = 8.0;
+/// Levels before the last need not come to rest better than this.
+const COARSE_TOLERANCE: f64 = 1e-4;
 
 /// Edges at which the ropelength of a smoothed curve is measured.
 const FINE_EDGES: usize = 800;
@@ -98,15 +109,28 @@ pub fn tighten_entry(
     let clock = CpuClock::start();
     settings.check()?;
     let plain = entry.start_curve()?;
-    let round = relax_moebius(&plain, MOEBIUS_EDGES, MOEBIUS_STEPS)?;
-    let mut starts = vec![plain, round];
+    let mut starts = vec![plain];
+    for n_edges in MOEBIUS_EDGES {
+        let round = relax_moebius(&starts[0], n_edges, MOEBIUS_STEPS)?;
+        // A long start needs more edges, or its strands pass through each other.
+        if entry.verify(&round).is_ok() {
+            starts.push(round);
+            break;
+        }
+    }
     for word in &entry.other_braids {
         starts.push(closed_braid(word)?);
     }
     let mut rng = Pcg64::seed_from_u64(settings.seed);
-    for _ in 0..settings.n_variants {
+    // Words of the table were chosen for the basins that they lead to, random ones make up for their lack.
+    for k in 0..settings.n_variants.saturating_sub(entry.other_braids.len()) {
         if !entry.braid.is_empty() {
-            starts.push(closed_braid(&padded(&entry.braid, &mut rng))?);
+            let word = if k == 0 {
+                padded(&entry.braid, &mut rng)
+            } else {
+                stabilised(&entry.braid, &mut rng)
+            };
+            starts.push(closed_braid(&word)?);
         }
     }
     for start in &starts {
@@ -128,6 +152,32 @@ fn padded(word: &[i32], rng: &mut Pcg64) -> Vec<i32> {
         padded.splice(place..place, [generator, -generator]);
     }
     padded
+}
+
+/// The word after one to three of Markov's moves at random: a further strand, a conjugation, a cancelling pair.
+///
+/// The closure is the same knot, embedded in another way; a further strand often leads into a better basin.
+fn stabilised(word: &[i32], rng: &mut Pcg64) -> Vec<i32> {
+    let mut word = word.to_vec();
+    for k in 0..rng.random_range(1..=3) {
+        let turn = rng.random_range(0..word.len());
+        word.rotate_left(turn);
+        let largest = word.iter().map(|g| g.abs()).max().unwrap_or(1);
+        let sign = if rng.random_bool(0.5) { 1 } else { -1 };
+        let generator = sign * rng.random_range(1..=largest);
+        match if k == 0 { 0 } else { rng.random_range(0..3) } {
+            0 if largest < MOST_STRANDS => word.push(sign * (largest + 1)),
+            1 => {
+                word.insert(0, generator);
+                word.push(-generator);
+            }
+            _ => {
+                let place = rng.random_range(0..=word.len());
+                word.splice(place..place, [generator, -generator]);
+            }
+        }
+    }
+    word
 }
 
 /// Tightens a closed curve, given in one or more embeddings of the same knot type; the shortest result wins.
@@ -156,32 +206,31 @@ pub fn tighten(
         });
     };
     let kind = Invariants::of(first.vertices())?;
-    let found = search::search(name, starts, &kind, settings)?;
-    let (mut curve, mut n_factorisations) = (found.curve, found.n_factorisations);
+    let (found, mut n_factorisations) = search::search(name, starts, &kind, settings)?;
+    let finalists = found.into_iter().take(settings.n_finalists());
+    let mut curves: Vec<Polyline> = finalists.map(|outcome| outcome.curve).collect();
     let mut converged = false;
     for per_unit in settings.levels() {
-        let n = ((per_unit * curve.length() / thickness(&curve).tau).round() as usize).max(16);
-        let level = Level {
-            weights: [1.0; 3],
-            damping: 0.05,
-            curvature_damping: 0.1,
-            tolerance: settings.tolerance,
-            rest: 0.1,
-            enough: 0.0,
-            max_steps: settings.max_steps,
-        };
-        let finer = tighten_level(&curve.resampled(n)?, &level)
-            .filter(|finer| check_type(name, &finer.curve, &kind, "tightening").is_ok());
-        let Some(finer) = finer else {
+        let mut finer: Vec<Outcome> = Vec::new();
+        for curve in &curves {
+            let outcome = refine(curve, per_unit, settings)?
+                .filter(|outcome| check_type(name, &outcome.curve, &kind, "tightening").is_ok());
+            n_factorisations += outcome.as_ref().map_or(0, |o| o.n_factorisations);
+            finer.extend(outcome);
+        }
+        let best = finer
+            .into_iter()
+            .min_by(|a, b| a.ropelength.total_cmp(&b.ropelength));
+        let Some(best) = best else {
             // The level before is still a tight curve of the right type.
-            tracing::warn!(name, n, "a level failed, the one before it is kept");
+            tracing::warn!(name, per_unit, "a level failed, the one before it is kept");
             converged = false;
             break;
         };
-        n_factorisations += finer.n_factorisations;
-        converged = finer.converged;
-        curve = finer.curve;
+        converged = best.converged;
+        curves = vec![best.curve];
     }
+    let curve = curves.swap_remove(0);
     let curve = curve.scaled(1.0 / thickness(&curve).tau)?;
     let certificate = Certificate::of(&curve, converged)?;
     Ok(TightKnot {
@@ -192,6 +241,37 @@ pub fn tighten(
         cpu_seconds: clock.seconds(),
         n_factorisations,
     })
+}
+
+/// Tightens a curve at a resolution; `None` if a quadratic program fails.
+fn refine(
+    curve: &Polyline,
+    per_unit: f64,
+    settings: &TightenSettings,
+) -> Result<Option<Outcome>, KnotError> {
+    let n = ((per_unit * curve.length() / thickness(curve).tau).round() as usize).max(16);
+    let is_last = per_unit == settings.per_unit;
+    let is_near = per_unit > WELL_RESOLVED;
+    let level = Level {
+        weights: [1.0; 3],
+        damping: 0.05,
+        curvature_damping: 0.1,
+        tolerance: if is_last {
+            settings.tolerance
+        } else {
+            settings.tolerance.max(COARSE_TOLERANCE)
+        },
+        rest: 0.1,
+        enough: 0.0,
+        reach: if is_near { NEAR_REACH } else { LOOSE_REACH },
+        max_steps: settings.max_steps,
+    };
+    let mut start = curve.resampled(n)?;
+    if is_near {
+        // The spline sharpens some vertices so much that the whole curve would have to grow.
+        start = start.smoothed(2)?;
+    }
+    Ok(tighten_level(&start, &level))
 }
 
 /// Refuses a curve whose invariants are not `kind`.

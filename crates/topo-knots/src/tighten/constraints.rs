@@ -118,7 +118,7 @@ pub(crate) fn rebuild(x: &[V], delta: f64, pairs: &mut Vec<(u32, u32)>, rows: &m
 }
 
 /// Derivatives of the radius of curvature at a vertex with respect to the edges before and after.
-fn radius_gradient(a: &V, b: &V) -> (V, V) {
+pub(super) fn radius_gradient(a: &V, b: &V) -> (V, V) {
     let (la, lb) = (a.norm(), b.norm());
     let normal = a.cross(b);
     let s = normal.norm().max(1e-12 * la * lb);

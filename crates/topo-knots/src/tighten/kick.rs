@@ -6,7 +6,7 @@ use rand::RngExt;
 use rand_pcg::Pcg64;
 use topo_core::Polyline;
 
-use super::level::{Level, tighten_level};
+use super::level::{LOOSE_REACH, Level, tighten_level};
 use crate::V;
 
 /// Displaces a closed curve by a random sum of its first harmonics so that the largest displacement is `amplitude`.
@@ -54,6 +54,7 @@ pub(crate) fn squeeze(curve: &Polyline, rng: &mut Pcg64) -> Option<Polyline> {
         tolerance: 1e-4,
         rest: 0.0,
         enough: 0.0,
+        reach: LOOSE_REACH,
         max_steps: 12,
     };
     let turned = curve.vertices().iter().map(|x| turn * x);

@@ -21,6 +21,9 @@ pub(crate) struct Level {
     pub rest: f64,
     /// Stops once the ropelength is below this.
     pub enough: f64,
+    /// Largest displacement of a vertex in the first step, and what it may always reach, in tube radii: struts are kept for all
+    /// pairs of edges that come within twice as much of touching.
+    pub reach: [f64; 2],
     /// Largest number of steps.
     pub max_steps: usize,
 }
@@ -32,6 +35,10 @@ const LARGEST_STEP: f64 = 0.9;
 
 /// Largest displacement of a vertex in one step, in units of the tube radius.
 const LONGEST_STEP: f64 = 0.5;
+/// The reach for starts that may be far from tight.
+pub(crate) const LOOSE_REACH: [f64; 2] = [LONGEST_STEP, 0.03];
+/// The reach for starts that are nearly tight: fewer struts.
+pub(crate) const NEAR_REACH: [f64; 2] = [0.1, 0.01];
 
 /// What tightening at one resolution came to.
 #[derive(Debug)]
@@ -63,7 +70,7 @@ pub(crate) fn tighten_level(start: &Polyline, level: &Level) -> Option<Outcome> 
     let mut history = vec![best_ropelength];
     let (mut pairs, mut rows): (Vec<(u32, u32)>, Vec<Row>) = (Vec::new(), Vec::new());
     let mut gradient = vec![0.0; 3 * n];
-    let mut delta: f64 = LONGEST_STEP;
+    let [mut delta, least_delta] = level.reach;
     let mut tau: f64 = 1.0;
     let (mut n_steps, mut n_factorisations, mut converged) = (0, 0, false);
     while n_steps < level.max_steps {
@@ -129,7 +136,7 @@ pub(crate) fn tighten_level(start: &Polyline, level: &Level) -> Option<Outcome> 
             break;
         }
         history.push(best_ropelength);
-        delta = (1.5 * largest.min(delta)).clamp(0.03, LONGEST_STEP);
+        delta = (1.5 * largest.min(delta)).clamp(least_delta, LONGEST_STEP);
         if history.len() > WINDOW {
             let before = history[history.len() - 1 - WINDOW];
             if before - best_ropelength < level.tolerance * best_ropelength && largest < level.rest

@@ -5,7 +5,7 @@ use rand_pcg::Pcg64;
 use topo_core::Polyline;
 
 use super::kick::{kick, squeeze};
-use super::level::{Level, Outcome, tighten_level};
+use super::level::{LOOSE_REACH, Level, Outcome, tighten_level};
 use super::settings::TightenSettings;
 use super::{Invariants, KnotError, check_type};
 use crate::thickness;
@@ -17,13 +17,14 @@ const LOOSE_PER_UNIT: f64 = 0.8;
 /// Curves that share the kicks at first.
 const N_FINALISTS: usize = 2;
 
-/// Tightens all starts coarsely and hops between basins from the best; returns the shortest of type `kind`.
+/// Tightens all starts coarsely and hops between basins from the best; returns the shortest of type `kind` first, and the number
+/// of factorisations.
 pub(crate) fn search(
     name: &str,
     starts: &[Polyline],
     kind: &Invariants,
     settings: &TightenSettings,
-) -> Result<Outcome, KnotError> {
+) -> Result<(Vec<Outcome>, usize), KnotError> {
     let mut rng = Pcg64::seed_from_u64(settings.seed);
     let mut pool: Vec<Outcome> = Vec::new();
     let mut last = "no start could be tightened".to_owned();
@@ -57,17 +58,14 @@ pub(crate) fn search(
         }
     }
     pool.sort_by(|a, b| a.ropelength.total_cmp(&b.ropelength));
-    match pool.into_iter().next() {
-        Some(best) => Ok(Outcome {
-            n_factorisations,
-            ..best
-        }),
-        None => Err(KnotError::NotTightened {
+    if pool.is_empty() {
+        return Err(KnotError::NotTightened {
             knot: name.to_owned(),
             n_starts: starts.len(),
             last,
-        }),
+        });
     }
+    Ok((pool, n_factorisations))
 }
 
 /// How to leave a basin.
@@ -112,6 +110,7 @@ fn level() -> Level {
         tolerance: 3e-4,
         rest: 0.3,
         enough: 0.0,
+        reach: LOOSE_REACH,
         max_steps: 100,
     }
 }

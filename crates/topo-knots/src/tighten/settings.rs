@@ -53,8 +53,8 @@ impl TightenSettings {
     pub fn fine() -> Self {
         Self {
             per_unit: 16.0,
-            n_variants: 2,
-            n_kicks: 12,
+            n_variants: 3,
+            n_kicks: 10,
             tolerance: 2e-5,
             max_steps: 200,
             ..Self::draft()
@@ -68,6 +68,12 @@ impl TightenSettings {
             levels.insert(0, 0.5 * levels[0]);
         }
         levels
+    }
+
+    /// Curves of the search that go on to the first level: at low resolution, basins that differ by less than a tenth of a
+    /// percent may change places.
+    pub(crate) fn n_finalists(&self) -> usize {
+        if self.per_unit > 8.0 { 2 } else { 1 }
     }
 
     /// Refuses settings out of range.
