@@ -48,7 +48,7 @@ pub use order::{OrderParameter, order_parameter};
 pub use parameters::{ExternalField, NematicAccuracy, NematicParameters, Sides};
 pub use particle::Particle;
 pub use real::Precision;
-pub use ring::{Ring, ring};
+pub use ring::{Ring, ring, ring_line};
 pub use state::NematicState;
 pub use stokes::{
     Drive, FaceSites, MacField, NoSlip, NoSlipReport, Spectral, StokesError, StokesSolver,

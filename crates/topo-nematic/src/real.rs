@@ -59,8 +59,8 @@ impl Precision {
     /// The name used in tables and scenes.
     pub fn name(self) -> &'static str {
         match self {
-            Self::Double => "double",
-            Self::Single => "single",
+            Self::Double => "f64",
+            Self::Single => "f32",
         }
     }
 

@@ -39,6 +39,41 @@ impl Ring {
 ///
 /// None without a particle, or when sectors without such cells show that no closed ring surrounds it.
 pub fn ring(state: &NematicState, threshold: f64) -> Option<Ring> {
+    let sectors = sectors(state, threshold)?;
+    let n = N_SECTORS as f64;
+    let radius = sectors.iter().map(|s| s[0]).sum::<f64>() / n;
+    let heights: Vec<f64> = sectors.iter().map(|s| s[1]).collect();
+    let height = heights.iter().sum::<f64>() / n;
+    let mode = |m: usize| {
+        let (mut a, mut b) = (0.0, 0.0);
+        for (s, z) in heights.iter().enumerate() {
+            let angle = std::f64::consts::TAU * m as f64 * (s as f64 + 0.5) / n;
+            a += z * angle.cos();
+            b += z * angle.sin();
+        }
+        2.0 * a.hypot(b) / n
+    };
+    Some(Ring {
+        radius,
+        height,
+        modes: (1..=N_MODES).map(mode).collect(),
+    })
+}
+
+/// The closed line of the ring, relative to the particle's centre (xi_N): one point a sector of azimuth.
+///
+/// Where the core of a disclination lies against the particle, [`defect_lines`](crate::defect_lines) ends there; this line goes on.
+pub fn ring_line(state: &NematicState, threshold: f64) -> Option<Vec<[f64; 3]>> {
+    let points = sectors(state, threshold)?.into_iter().enumerate();
+    let place = |(s, [radius, height]): (usize, [f64; 2])| {
+        let angle = std::f64::consts::TAU * (s as f64 + 0.5) / N_SECTORS as f64;
+        [radius * angle.cos(), radius * angle.sin(), height]
+    };
+    Some(points.map(place).collect())
+}
+
+/// Distance from the axis and height of the ring in each sector.
+fn sectors(state: &NematicState, threshold: f64) -> Option<Vec<[f64; 2]>> {
     let (grid, particle) = (state.grid(), state.particle()?);
     let [nx, ny, nz] = grid.cells();
     let mut sectors = vec![[0.0_f64; 3]; N_SECTORS];
@@ -69,25 +104,6 @@ pub fn ring(state: &NematicState, threshold: f64) -> Option<Ring> {
             }
         }
     }
-    if sectors.iter().any(|s| s[0] <= 0.0) {
-        return None;
-    }
-    let n = N_SECTORS as f64;
-    let radius = sectors.iter().map(|s| s[1] / s[0]).sum::<f64>() / n;
-    let heights: Vec<f64> = sectors.iter().map(|s| s[2] / s[0]).collect();
-    let height = heights.iter().sum::<f64>() / n;
-    let mode = |m: usize| {
-        let (mut a, mut b) = (0.0, 0.0);
-        for (s, z) in heights.iter().enumerate() {
-            let angle = std::f64::consts::TAU * m as f64 * (s as f64 + 0.5) / n;
-            a += z * angle.cos();
-            b += z * angle.sin();
-        }
-        2.0 * a.hypot(b) / n
-    };
-    Some(Ring {
-        radius,
-        height,
-        modes: (1..=N_MODES).map(mode).collect(),
-    })
+    let mean = |s: &[f64; 3]| (s[0] > 0.0).then(|| [s[1] / s[0], s[2] / s[0]]);
+    sectors.iter().map(mean).collect()
 }

@@ -51,11 +51,11 @@ impl NematicSweep {
         self.folder.join(row.case_name())
     }
 
-    /// Defect lines of a case at the times kept; the charged state first, its time `None`.
-    pub fn lines(&self, row: &NematicRow) -> Result<Vec<DefectLine>, XtaskError> {
+    /// Rings of a case at the times kept; the charged state first, its time `None`.
+    pub fn rings(&self, row: &NematicRow) -> Result<Vec<DefectLine>, XtaskError> {
         let mut lines: Vec<DefectLine> = Vec::new();
         let mut last = None;
-        for p in read_csv::<LinePoint>(&self.case(row).join("lines.csv"))? {
+        for p in read_csv::<LinePoint>(&self.case(row).join("ring.csv"))? {
             let id = (p.time.map(f64::to_bits), p.line);
             if last != Some(id) {
                 last = Some(id);

@@ -93,7 +93,7 @@ impl<'a> Solids<'a> {
 
     /// Picture on a transparent ground; `None` when the window has no pixels.
     ///
-    /// The largest capsules, up to eight, take sky and key light from the others.
+    /// The largest capsules, up to eight of about the same radius, take sky and key light from the others.
     pub fn draw(&self, window: &Window) -> Option<Pixmap> {
         let depth = |c: &Capsule| c.ends[0].z.max(c.ends[1].z) + c.radius;
         let near = self.capsules.iter().map(depth).fold(f64::MIN, f64::max);
@@ -101,6 +101,9 @@ impl<'a> Solids<'a> {
         let span = (near - far).max(1e-9);
         let mut order: Vec<usize> = (0..self.capsules.len()).collect();
         order.sort_by(|&a, &b| self.capsules[b].radius.total_cmp(&self.capsules[a].radius));
+        // what is much smaller than the largest thing throws no shadow worth drawing
+        let widest = order.first().map_or(0.0, |&k| self.capsules[k].radius);
+        order.retain(|&k| self.capsules[k].radius > 0.5 * widest);
         order.truncate(8);
         let key = key_light();
         let pieces = self

@@ -87,6 +87,29 @@ pub fn number(value: f64, places: usize) -> String {
     }
 }
 
+/// Number with `digits` significant digits; beyond 0.001 and 100 000 as a multiple of a power of ten.
+pub fn significant(value: f64, digits: usize) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return number(value, 0);
+    }
+    let exponent = value.abs().log10().floor() as i32;
+    let places = |e: i32| (digits as i32 - 1 - e).max(0) as usize;
+    if (-3..5).contains(&exponent) {
+        return number(value, places(exponent));
+    }
+    let mantissa = number(value / 10.0_f64.powi(exponent), places(0));
+    format!("{mantissa}·{}", power_of_ten(exponent))
+}
+
+fn power_of_ten(exponent: i32) -> String {
+    let digits = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+    let high = exponent.to_string();
+    let high = high
+        .chars()
+        .map(|c| c.to_digit(10).map_or('⁻', |d| digits[d as usize]));
+    "10".chars().chain(high).collect()
+}
+
 /// Number with a fixed count of decimals and a true minus sign.
 pub fn fixed(value: f64, places: usize) -> String {
     format!("{value:.places$}").replace('-', "−")
@@ -108,19 +131,21 @@ pub fn log_tick(value: f64) -> String {
     if (-2.01..3.01).contains(&exponent) {
         return number(value, 2);
     }
-    let digits = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
-    let power = format!("{}", exponent.round() as i64);
-    let high = power
-        .chars()
-        .map(|c| c.to_digit(10).map_or('⁻', |d| digits[d as usize]));
-    std::iter::once("10".to_owned())
-        .chain(high.map(String::from))
-        .collect()
+    power_of_ten(exponent.round() as i32)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn significant_digits_are_kept() {
+        let told = |v| significant(v, 2);
+        assert_eq!(
+            [0.0, 0.00123, 12.34, -0.5, 2.3e-6, 4e7].map(told),
+            ["0", "0.0012", "12", "−0.5", "2.3·10⁻⁶", "4·10⁷"]
+        );
+    }
 
     #[test]
     fn scripts_come_back_to_the_baseline() {

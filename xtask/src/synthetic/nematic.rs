@@ -21,7 +21,7 @@ pub fn nematic(folder: &Path) {
     }
     for row in &rows {
         let case = folder.join(row.case_name());
-        table(&case.join("lines.csv"), &lines(row));
+        table(&case.join("ring.csv"), &lines(row));
         table(&case.join("slices.csv"), &slices(row));
         table(&case.join("series.csv"), &series(row));
     }

@@ -59,7 +59,7 @@ fn state(results: &Path, case: &Case, top: f64) -> Result<Value, XtaskError> {
     let cut = |s: &&crate::data::Snapshot| (s.cut - row.cut).abs() < 1e-9;
     for s in snapshots(&folder.join("snapshots.csv"))?.iter().filter(cut) {
         shapes.push((
-            text::number(s.time, 3),
+            text::significant(s.time, 2),
             camera::view(&s.curve.points, &turn),
             s.curve.density.clone(),
         ));

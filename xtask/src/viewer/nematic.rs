@@ -27,7 +27,7 @@ pub fn data(results: &Path) -> Result<Option<Value>, XtaskError> {
 }
 
 fn colloid(sweep: &NematicSweep, row: &NematicRow) -> Result<Value, XtaskError> {
-    let (slices, lines) = (sweep.slices(row)?, sweep.lines(row)?);
+    let (slices, lines) = (sweep.slices(row)?, sweep.rings(row)?);
     let scale = slices
         .iter()
         .map(|s| s.half_size()[0].max(s.half_size()[1]))
@@ -52,14 +52,14 @@ fn colloid(sweep: &NematicSweep, row: &NematicRow) -> Result<Value, XtaskError> 
             let (values, long) = rods(slice, row.radius, scale);
             rod = long;
             let time = slice.time.unwrap_or(0.0) / row.radius.powi(2);
-            json!({ "t": text::number(time, 3), "lines": here, "rods": shorts(values.into_iter(), scale) })
+            json!({ "t": text::significant(time, 2), "lines": here, "rods": shorts(values.into_iter(), scale) })
         })
         .collect();
     Ok(json!({
         "q": row.q,
         "flow": row.flow == "on",
         "radius": row.radius,
-        "energy": text::number(row.f_charged, 4),
+        "energy": text::significant(row.f_charged, 4),
         "buckled": row.order_parameter > 0.01,
         "scale": scale,
         "rod": rod,

@@ -11,7 +11,7 @@ use topo_nematic::{
 
 use super::late::late_rate;
 use super::scene::{NematicCase, NematicScene};
-use super::snapshot::Kept;
+use super::snapshot::{Kept, RING_ORDER};
 use super::table::{NematicRow, NematicSample};
 use crate::AnalysisError;
 use crate::folder::{identity, make_folder};
@@ -19,7 +19,7 @@ use crate::table::{push_warning, write_table};
 use crate::times::DischargeTimes;
 
 /// Changes whenever the same scene gives other numbers than before; finished cases of another version are computed again.
-const RESULTS_VERSION: u32 = 1;
+const RESULTS_VERSION: u32 = 2;
 
 /// Shares of the energy whose times a row lists.
 pub const NEMATIC_SHARES: [f64; 4] = [0.5, 0.9, 0.99, 0.999];
@@ -28,7 +28,7 @@ pub const NEMATIC_SHARES: [f64; 4] = [0.5, 0.9, 0.99, 0.999];
 const CHECKPOINT_SECONDS: f64 = 25.0;
 
 /// Schema of the checkpoint of snapshots.
-const KEPT: &str = "nematic-snapshots/1";
+const KEPT: &str = "nematic-snapshots/2";
 
 /// Identity of a case: everything that its numbers depend on.
 pub(super) fn fingerprint(scene: &NematicScene, case: &NematicCase) -> String {
@@ -209,7 +209,9 @@ impl CaseRun<'_> {
         all.keep(None, charged.state(), None);
         all.lines.extend(kept.lines.iter().cloned());
         all.slices.extend(kept.slices.iter().cloned());
+        all.ring.extend(kept.ring.iter().cloned());
         write_table(&folder.join("lines.csv"), &all.lines)?;
+        write_table(&folder.join("ring.csv"), &all.ring)?;
         write_table(&folder.join("slices.csv"), &all.slices)?;
         let series: Vec<NematicSample> = run.record.samples.iter().map(sample).collect();
         write_table(&folder.join("series.csv"), &series)?;
@@ -241,9 +243,6 @@ impl CaseRun<'_> {
         )?)
     }
 }
-
-/// Degree of order whose isosurface encloses a defect line.
-const RING_ORDER: f64 = 0.35;
 
 fn sample(s: &topo_nematic::NematicSample) -> NematicSample {
     NematicSample {

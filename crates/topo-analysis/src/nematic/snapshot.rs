@@ -1,10 +1,12 @@
 //! What is kept of the field at a few times: defect lines, and the vertical plane through the particle's centre.
 
 use serde::{Deserialize, Serialize};
-use topo_nematic::{FlowCoupling, NematicState, defect_lines, order_and_director};
+use topo_nematic::{FlowCoupling, NematicState, defect_lines, order_and_director, ring_line};
 
 use super::table::{LinePoint, SlicePoint};
 
+/// Degree of order whose isosurface encloses the defect ring.
+pub(super) const RING_ORDER: f64 = 0.35;
 /// Shares of the energy after the switch at which the field is looked at.
 const SHARES: [f64; 12] = [
     1.0, 0.98, 0.9, 0.75, 0.5, 0.25, 0.1, 0.03, 0.01, 0.003, 0.001, 0.0005,
@@ -19,6 +21,8 @@ pub(super) struct Kept {
     n_passed: usize,
     /// Points of the defect lines.
     pub lines: Vec<LinePoint>,
+    /// Points of the ring.
+    pub ring: Vec<LinePoint>,
     /// Points of the slices.
     pub slices: Vec<SlicePoint>,
 }
@@ -44,6 +48,7 @@ impl Kept {
     /// Keeps a state; `None` is the time of the charged one.
     pub fn keep(&mut self, time: Option<f64>, state: &NematicState, flow: Option<&FlowCoupling>) {
         let centre = centre(state);
+        let first = self.lines.len();
         for (k, line) in defect_lines(state).into_iter().enumerate() {
             for (p, cosine) in line.points.iter().zip(&line.cosine) {
                 let angle = cosine.clamp(-1.0, 1.0).acos().to_degrees();
@@ -57,6 +62,22 @@ impl Kept {
                     angle: angle.is_finite().then_some(angle),
                 });
             }
+        }
+        for [x, y, z] in ring_line(state, RING_ORDER).unwrap_or_default() {
+            let far = |p: &&LinePoint| (p.x - x).hypot(p.y - y).hypot(p.z - z);
+            let nearest = self.lines[first..]
+                .iter()
+                .min_by(|a, b| far(a).total_cmp(&far(b)))
+                .filter(|p| far(p) < 3.0 * state.grid().spacing());
+            self.ring.push(LinePoint {
+                time,
+                line: 0,
+                closed: true,
+                x,
+                y,
+                z,
+                angle: nearest.and_then(|p| p.angle),
+            });
         }
         self.keep_slice(time, state, flow, centre);
     }

@@ -59,7 +59,7 @@ fn overview(sweep: &NematicSweep, canvas: &mut Canvas) -> Result<(), XtaskError>
     let row = shown(sweep);
     let slices = sweep.slices(row)?;
     let slice = slices.iter().find(|s| s.time.is_none());
-    let solids = colloid(row.radius, row.q, &sweep.lines(row)?, slice, 14.0);
+    let solids = colloid(row.radius, row.q, &sweep.rings(row)?, slice, 14.0);
     let [x0, y0, x1, y1] = solids.extent();
     let (at, size) = ([14.0, 26.0], [330.0, 248.0]);
     let unit = (size[0] / (x1 - x0)).min(size[1] / (y1 - y0)) * 0.97;
@@ -118,7 +118,7 @@ fn rings(sweep: &NematicSweep, canvas: &mut Canvas) -> Result<(), XtaskError> {
     let mut pictures = Vec::new();
     for &k in &picked {
         let row = &sweep.rows[k];
-        let solids = colloid(row.radius, row.q, &sweep.lines(row)?, None, 22.0);
+        let solids = colloid(row.radius, row.q, &sweep.rings(row)?, None, 22.0);
         let [x0, y0, x1, y1] = solids.extent();
         unit = unit.min(size[0] / (x1 - x0)).min(size[1] / (y1 - y0));
         pictures.push((row, solids));
@@ -153,8 +153,8 @@ fn vectors(sweep: &NematicSweep, canvas: &mut Canvas, table: &mut Table) {
     let panel = Panel {
         at: [52.0, 330.0],
         size: [166.0, 166.0],
-        x: Axis::linear("⟨*Q*_{xz}⟩ (scaled)", (-half, half), step(2.0 * half, 3.0)),
-        y: Axis::linear("⟨*Q*_{yz}⟩ (scaled)", (-half, half), step(2.0 * half, 3.0)),
+        x: Axis::linear("⟨*Q*_{xz}⟩ (scaled)", (-half, half), step(2.0 * half, 5.0)),
+        y: Axis::linear("⟨*Q*_{yz}⟩ (scaled)", (-half, half), step(2.0 * half, 5.0)),
     };
     let scale = Scale::viridis(
         f64::from(sweep.rows[0].q),
@@ -273,8 +273,8 @@ fn finding(sweep: &NematicSweep) -> String {
             format!("No ring up to q = {} buckles.", last.q),
             |q| format!("Rings buckle from q = {q} on (R = {} ξ_N).", first.radius)
         ),
-        text::number(first.f_charged, 4),
-        text::number(last.f_charged, 4),
+        text::significant(first.f_charged, 4),
+        text::significant(last.f_charged, 4),
         first.q,
         last.q,
         if found.energy_is_monotonic {

@@ -68,7 +68,7 @@ fn snapshots(sweep: &NematicSweep, canvas: &mut Canvas) -> Result<String, XtaskE
     let picked: Vec<&Slice> = (0..n)
         .map(|k| after[(k * (after.len() - 1)) / (n - 1).max(1)])
         .collect();
-    let lines = sweep.lines(row)?;
+    let lines = sweep.rings(row)?;
     let [half_x, half_z] = picked[0].half_size();
     let unit = (160.0 / (2.0 * half_x)).min(150.0 / (2.0 * half_z));
     let width = 168.0;
@@ -90,13 +90,13 @@ fn snapshots(sweep: &NematicSweep, canvas: &mut Canvas) -> Result<String, XtaskE
         let now: Vec<&DefectLine> = lines.iter().filter(|l| l.time == slice.time).collect();
         slice::draw(canvas, slice, &now, &look)?;
         let time = slice.time.unwrap_or(0.0) / row.radius.powi(2);
-        let label = format!("*t* = {} *R*^{{2}}/Γ*L*", text::number(time, 2));
+        let label = format!("*t* = {} *R*^{{2}}/Γ*L*", text::significant(time, 2));
         canvas.text(center[0], 24.0, &label, Style::default().middle().size(9.0));
         if most > 0.0 {
             let label = format!(
                 "max |*u*| {}, |ω| {}",
-                text::number(speed, 2),
-                text::number(most, 2)
+                text::significant(speed, 2),
+                text::significant(most, 2)
             );
             let y = center[1] + half_z * unit + 12.0;
             let style = Style::default().middle().size(8.5).color(QUIET);
