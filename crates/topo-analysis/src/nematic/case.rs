@@ -152,7 +152,7 @@ impl CaseRun<'_> {
             t90_charged: at(&whole, 1),
             t99_charged: at(&whole, 2),
             t999_charged: at(&whole, 3),
-            late_rate: late_rate(curve, run.start),
+            late_rate: late_rate(curve),
             steps: discharge.n_steps,
             evaluations: charge.n_steps + discharge.counters.n_rate_evaluations,
             stokes_updates: flow.map_or(0, |f| f.n_updates),
