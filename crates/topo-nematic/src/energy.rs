@@ -59,7 +59,7 @@ impl<T: Real> Kernel<T> {
         let h = self.domain.grid.spacing();
         let link = 0.5 * self.material().elastic_constant * h;
         EnergyParts {
-            elastic: link * sum[0],
+            elastic: link * sum[0] + self.second_energy(q),
             bulk: h * h * h * sum[1],
             surface: link * sum[2],
             field: h * h * h * sum[3],

@@ -3,6 +3,7 @@
 pub(crate) mod combine;
 mod elementwise;
 pub(crate) mod run;
+pub(crate) mod second;
 
 use crate::Material;
 use crate::real::{Lanes, Real};

@@ -80,9 +80,14 @@ impl<'a, T: Real> Relaxation<'a, T> {
             inputs: [(0.0, &self.velocity[..])],
             relaxing: true,
         };
-        let [ff, fv, vv, residual] =
-            self.kernel
-                .combine::<false, 1, true>(&self.q, &what, &mut self.force);
+        let mut sums = self
+            .kernel
+            .combine::<false, 1, true>(&self.q, &what, &mut self.force);
+        if self.kernel.second.is_some() {
+            self.kernel.add_second(&self.q, 1.0, &mut self.force);
+            sums = self.kernel.sums_of(&self.force, &self.velocity);
+        }
+        let [ff, fv, vv, residual] = sums;
         let rms = (residual / self.kernel.domain.total_mass.max(1.0)).sqrt();
         if !rms.is_finite() || ff == 0.0 {
             return rms;
@@ -146,6 +151,8 @@ impl<T: Real> Kernel<T> {
         let h = self.domain.grid.spacing();
         let m = self.material();
         let order = m.order().max(m.equilibrium_order().unwrap_or(0.0));
-        m.elastic_constant * laplacian / (h * h) + m.largest_bulk_stiffness(order)
+        // Each component of the divergence has three terms of at most 1/h.
+        let second = self.second.as_ref().map_or(0.0, |s| 3.0 * s.constant.abs());
+        (m.elastic_constant * laplacian + second) / (h * h) + m.largest_bulk_stiffness(order)
     }
 }

@@ -95,14 +95,8 @@ impl<T: Real> Stabilised<T> {
             let on_start = 1.0 - s.on_last - s.on_before;
             let (on_rate, on_start_rate) = (s.on_rate * dt, s.on_start_rate * dt);
             self.counters.n_rate_evaluations += 1;
-            if let Some(extra) = extra {
-                rate(
-                    kernel,
-                    self.mobility,
-                    &self.last,
-                    &mut self.end_rate,
-                    Some(extra),
-                );
+            if extra.is_some() || kernel.second.is_some() {
+                rate(kernel, self.mobility, &self.last, &mut self.end_rate, extra);
                 if stage == 2 {
                     self.before.copy_from_slice(&self.q);
                 }
@@ -201,7 +195,11 @@ fn rate<T: Real>(
         inputs: [(0.0, q)],
         relaxing: false,
     };
-    let sums = kernel.combine::<false, 1, true>(q, &what, rate);
+    let mut sums = kernel.combine::<false, 1, true>(q, &what, rate);
+    if kernel.second.is_some() {
+        kernel.add_second(q, mobility, rate);
+        sums[3] = kernel.sums_of(rate, q)[3] / (mobility * mobility);
+    }
     if let Some(extra) = extra {
         extra.add_rate(q, rate);
     }

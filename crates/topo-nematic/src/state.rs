@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::tensor::Tensor5;
-use crate::{Grid, NematicError, Particle};
+use crate::{Faces, Grid, NematicError, Particle};
 
 /// The tensor field of a nematic on its grid.
 ///
@@ -61,6 +61,45 @@ impl NematicState {
             }
         }
         Self::new(grid, particle, q)
+    }
+
+    /// This field at the cells of another state, by trilinear interpolation; both boxes are taken to be of one size.
+    pub(crate) fn interpolated(&self, onto: &Self) -> Self {
+        let (fine, coarse) = (onto.grid.cells(), self.grid.cells());
+        let mut result = onto.clone();
+        let (n, n_coarse) = (onto.grid.n_cells(), self.grid.n_cells());
+        // The two nearest coarse cells along an axis, and the share of the second.
+        let near = |axis: usize, i: usize| -> ([usize; 2], f64) {
+            let size = coarse[axis] as f64;
+            let x = (i as f64 + 0.5) / fine[axis] as f64 * size - 0.5;
+            let (low, share) = (x.floor(), x - x.floor());
+            let place = |x: f64| match self.grid.faces()[axis] {
+                Faces::Periodic => x.rem_euclid(size) as usize,
+                Faces::Wall => x.clamp(0.0, size - 1.0) as usize,
+            };
+            ([place(low), place(low + 1.0)], share)
+        };
+        for k in 0..fine[2] {
+            let (ks, w) = near(2, k);
+            for j in 0..fine[1] {
+                let (js, v) = near(1, j);
+                for i in 0..fine[0] {
+                    let (is, u) = near(0, i);
+                    let cell = onto.grid.index([i, j, k]);
+                    for c in 0..5 {
+                        let mut sum = 0.0;
+                        for corner in 0..8 {
+                            let (a, b, d) = (corner & 1, corner >> 1 & 1, corner >> 2);
+                            let weight = [1.0 - u, u][a] * [1.0 - v, v][b] * [1.0 - w, w][d];
+                            let from = self.grid.index([is[a], js[b], ks[d]]);
+                            sum += weight * self.q[c * n_coarse + from];
+                        }
+                        result.q[c * n + cell] = sum;
+                    }
+                }
+            }
+        }
+        result
     }
 
     /// The grid.

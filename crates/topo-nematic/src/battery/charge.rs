@@ -9,7 +9,9 @@ use super::record::ChargeReport;
 use crate::kernel::run::Kernel;
 use crate::memory::ByteAccount;
 use crate::relax::{Clock, Relaxation};
-use crate::{EnergyParts, NematicError, NematicState, OrderParameter, Ring, order_parameter, ring};
+use crate::{
+    EnergyParts, NematicError, NematicState, OrderParameter, Particle, Ring, order_parameter, ring,
+};
 
 /// How a nematic is charged.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -93,6 +95,69 @@ impl NematicBattery {
         settings: &ChargeSettings,
         hooks: &mut RunHooks<'_>,
     ) -> Result<ChargedNematic, NematicError> {
+        self.relax(settings, None, hooks)
+    }
+
+    /// Lets the nematic relax from a given state; the seeds of the settings are not used.
+    ///
+    /// # Errors
+    /// As [`charge`](Self::charge), and a state of another grid.
+    pub fn charge_from(
+        &self,
+        start: &NematicState,
+        settings: &ChargeSettings,
+        hooks: &mut RunHooks<'_>,
+    ) -> Result<ChargedNematic, NematicError> {
+        self.check_grid(start)?;
+        let once = ChargeSettings {
+            seeds: vec![0.0],
+            coarse_start: false,
+            ..settings.clone()
+        };
+        self.relax(&once, Some(start), hooks)
+    }
+
+    /// Takes a given state as charged, as it is.
+    ///
+    /// # Errors
+    /// A state of another grid.
+    pub fn adopt(&self, state: &NematicState) -> Result<ChargedNematic, NematicError> {
+        self.check_grid(state)?;
+        let kernel = self.kernel::<f64>(&self.charged_surface(), self.accuracy.threads);
+        let report = ChargeReport {
+            stop: "adopted",
+            seed: 0.0,
+            n_steps: 0,
+            rms_field: kernel.rms_field_of(state),
+            energy: kernel.energy_of(state),
+            order: order_parameter(state, self.parameters.material.order()),
+            cpu_seconds: 0.0,
+            bytes: ByteAccount::default(),
+        };
+        Ok(ChargedNematic {
+            battery: self.clone(),
+            state: state.clone(),
+            report,
+        })
+    }
+
+    fn check_grid(&self, state: &NematicState) -> Result<(), NematicError> {
+        if *state.grid() == self.grid {
+            return Ok(());
+        }
+        Err(NematicError::Length {
+            what: "the state (of another grid)",
+            found: state.q_tensor().len(),
+            expected: 5 * self.grid.n_cells(),
+        })
+    }
+
+    fn relax(
+        &self,
+        settings: &ChargeSettings,
+        from: Option<&NematicState>,
+        hooks: &mut RunHooks<'_>,
+    ) -> Result<ChargedNematic, NematicError> {
         settings.check()?;
         let clock = CpuClock::start();
         let kernel = self.kernel::<f64>(&self.charged_surface(), self.accuracy.threads);
@@ -113,7 +178,10 @@ impl NematicBattery {
                     last_order = u.last_order;
                 }
                 None => {
-                    let start = self.charge_start(settings, *seed, hooks)?;
+                    let start = match from {
+                        Some(state) => state.clone(),
+                        None => self.charge_start(settings, *seed, hooks)?,
+                    };
                     relaxation.set(start.q_tensor());
                 }
             }
@@ -191,7 +259,7 @@ impl NematicBattery {
             cpu_seconds: clock.seconds(),
             bytes: ByteAccount {
                 fields: n_bytes,
-                geometry: kernel.domain.n_bytes(),
+                geometry: kernel.n_bytes(),
                 flow: 0,
             },
         };
@@ -202,13 +270,42 @@ impl NematicBattery {
         })
     }
 
+    /// The start field, relaxed on a coarse grid first if asked for and possible.
     fn charge_start(
         &self,
         settings: &ChargeSettings,
         seed: f64,
-        _hooks: &RunHooks<'_>,
+        hooks: &RunHooks<'_>,
     ) -> Result<NematicState, NematicError> {
-        self.start(seed, settings.seed_azimuth)
+        let fine = self.start(seed, settings.seed_azimuth)?;
+        if !settings.coarse_start {
+            return Ok(fine);
+        }
+        let spacing = 2.0 * self.grid.spacing();
+        let Ok(grid) = self.parameters.grid(spacing) else {
+            return Ok(fine);
+        };
+        let particle = match self.particle.map(|p| Particle::central(&grid, p.radius())) {
+            Some(Err(_)) => return Ok(fine),
+            Some(Ok(particle)) => Some(particle),
+            None => None,
+        };
+        let coarse = NematicBattery {
+            grid,
+            particle,
+            // Values on faces are known at the fine faces only.
+            values: Default::default(),
+            ..self.clone()
+        };
+        let coarse_settings = ChargeSettings {
+            seeds: vec![seed],
+            tolerance: 1e-4_f64.max(settings.tolerance),
+            order_tolerance: 1e-4_f64.max(settings.order_tolerance),
+            coarse_start: false,
+            ..settings.clone()
+        };
+        let charged = coarse.charge(&coarse_settings, &mut hooks.without_files())?;
+        Ok(charged.state.interpolated(&fine))
     }
 }
 
@@ -250,6 +347,17 @@ impl Kernel<f64> {
         let mut q = vec![0.0; self.array_length()];
         self.spread(state.q_tensor(), &mut q);
         self.energy(&q)
+    }
+
+    /// Root mean square of the molecular field of a state.
+    fn rms_field_of(&self, state: &NematicState) -> f64 {
+        let (mut q, mut h) = (
+            vec![0.0; self.array_length()],
+            vec![0.0; self.array_length()],
+        );
+        self.spread(state.q_tensor(), &mut q);
+        self.molecular_field(&q, &mut h);
+        (self.sums_of(&h, &q)[3] / self.domain.total_mass.max(1.0)).sqrt()
     }
 
     /// Length of the mean horizontal tilt over active cells.

@@ -8,9 +8,12 @@ use topo_core::{
 
 use super::hooks::{Phase, Progress, RunHooks};
 use super::record::{CHANNELS, NematicSample, PhaseReport, RunRecord};
-use super::switch::SwitchedNematic;
+use super::switch::{SwitchTarget, SwitchedNematic, blend, extend_into_cut_cells};
+use crate::anchoring::Anchoring;
 use crate::battery::record::FlowReport;
+use crate::domain::SpecialCell;
 use crate::kernel::run::Kernel;
+use crate::kernel::run::Threads;
 use crate::memory::ByteAccount;
 use crate::real::Real;
 use crate::stabilised::{ExtraRate, Stabilised};
@@ -75,6 +78,33 @@ const SCHEMA: &str = "nematic-discharge/1";
 /// First step, in h²/(Gamma L).
 const FIRST_STEP: f64 = 1e-3;
 
+/// Steps of a ramp, at least.
+const RAMP_STEPS: f64 = 64.0;
+
+/// The anchoring while it is ramped: a kernel whose links are set for each step, and the links at both ends.
+struct Ramp<T> {
+    duration: f64,
+    kernel: Kernel<T>,
+    ends: [Vec<SpecialCell>; 2],
+}
+
+impl<T: Real> Ramp<T> {
+    fn new(switched: &SwitchedNematic, duration: f64, threads: Threads, gapless: bool) -> Self {
+        let battery = &switched.charged.battery;
+        let mut kernel = battery.kernel::<T>(&battery.charged_surface(), threads);
+        if gapless {
+            kernel = kernel.without_gaps();
+        }
+        let last = switched.charged.surface_at_end_of_ramp(&switched.settings);
+        let last = battery.kernel::<T>(&last, threads);
+        Self {
+            duration,
+            ends: [kernel.domain.special.clone(), last.domain.special],
+            kernel,
+        }
+    }
+}
+
 /// A discharge that is not finished.
 #[derive(Clone, Serialize, Deserialize)]
 struct Progressing {
@@ -121,13 +151,17 @@ impl SwitchedNematic {
         let battery = &self.charged.battery;
         let (accuracy, material) = (battery.accuracy(), &battery.parameters().material);
         let unit = battery.diffusion_time();
-        let mut kernel = battery.kernel::<T>(&self.settings.surface(), accuracy.threads);
+        let mut kernel = battery.kernel::<T>(
+            &self.charged.surface_after(&self.settings),
+            accuracy.threads,
+        );
+        let gapless = settings.flow.is_some();
+        if gapless {
+            kernel = kernel.without_gaps();
+        }
         let mut flow = match &settings.flow {
             None => None,
-            Some(parameters) => {
-                kernel = kernel.without_gaps();
-                Some(CoupledFlow::new(self, &kernel, parameters)?)
-            }
+            Some(parameters) => Some(CoupledFlow::new(self, parameters)?),
         };
         let case = format!(
             "{:?} {:?} {:?} {settings:?}",
@@ -135,6 +169,10 @@ impl SwitchedNematic {
             accuracy,
             self.settings
         );
+        let mut ramp = self
+            .settings
+            .ramp
+            .map(|duration| Ramp::new(self, duration, accuracy.threads, gapless));
         let mut state = self.state.clone();
         let resumed: Option<(Progressing, Vec<f64>)> = hooks.resume(SCHEMA, &case)?;
         let h = battery.grid().spacing();
@@ -162,6 +200,11 @@ impl SwitchedNematic {
                 }
             }
         };
+        // The final kernel waits until the ramp is over.
+        let mut waiting = None;
+        if let Some(ramp) = ramp.take_if(|ramp| run.time < ramp.duration) {
+            waiting = Some((std::mem::replace(&mut kernel, ramp.kernel), ramp.ends));
+        }
         let mut field = {
             let mut q = vec![T::of(0.0); kernel.array_length()];
             kernel.spread(state.q_tensor(), &mut q);
@@ -185,8 +228,10 @@ impl SwitchedNematic {
             // Outputs up to the last one are done.
             outputs.due(last.time, run.n_steps.saturating_sub(1));
         }
-        let longest = field.longest_step(&kernel);
+        let mut longest = field.longest_step(&kernel);
         if let Some(flow) = &mut flow {
+            // The energy weighs the molecular field by these masses, and so must the force.
+            flow.coupling.set_weights(&kernel.domain.masses());
             flow.update(&kernel, &mut field)?;
         }
         field.update_rate(&kernel, extra(&flow));
@@ -197,7 +242,7 @@ impl SwitchedNematic {
                     tracing::warn!(%error, "a step is missing from the energy curve");
                 }
             }
-            let finished = energy.total() <= goal;
+            let finished = waiting.is_none() && energy.total() <= goal;
             if (outputs.due(run.time, run.n_steps) || finished)
                 && run.samples.last().is_none_or(|s| s.time < run.time)
             {
@@ -235,7 +280,25 @@ impl SwitchedNematic {
             }
             run.n_trials += 1;
             let remaining = until - run.time;
-            let dt = control.dt().min(longest).min(remaining);
+            let mut dt = control.dt().min(longest).min(remaining);
+            if let (Some((_, ends)), Some(duration)) = (&waiting, self.settings.ramp) {
+                // The surface changes at the middle of each step; what that takes is work.
+                let left = duration - run.time;
+                dt = dt.min(duration / RAMP_STEPS);
+                if dt > 0.99 * left {
+                    dt = left;
+                }
+                blend(
+                    &mut kernel,
+                    &ends[0],
+                    &ends[1],
+                    (run.time + 0.5 * dt) / duration,
+                );
+                let changed = kernel.energy(&field.q);
+                run.ledger.add_work(changed.total() - energy.total());
+                energy = changed;
+                field.forget_rate();
+            }
             let result = field.try_step(&kernel, dt, extra(&flow)).and_then(|error| {
                 let error = error / material.order().max(1e-3);
                 control.judge(error).map(|()| error)
@@ -259,6 +322,40 @@ impl SwitchedNematic {
                     control.accept(dt, error, 3);
                     run.time = if dt < remaining { run.time + dt } else { until };
                     run.n_steps += 1;
+                    let over = self
+                        .settings
+                        .ramp
+                        .is_none_or(|d| run.time >= d * (1.0 - 1e-12));
+                    if let Some((last, ends)) = waiting.take_if(|_| over) {
+                        blend(&mut kernel, &ends[0], &ends[1], 1.0);
+                        let changed = kernel.energy(&field.q);
+                        run.ledger.add_work(changed.total() - energy.total());
+                        kernel.gather(&field.q, state.q_mut());
+                        if matches!(self.settings.to, SwitchTarget::Free(_)) {
+                            let surface = self.charged.surface_after(&self.settings);
+                            let double = battery.kernel::<f64>(&surface, Threads::One);
+                            extend_into_cut_cells(
+                                battery,
+                                Anchoring::Free,
+                                &double,
+                                changed.total(),
+                                &mut state,
+                            );
+                        }
+                        kernel = last;
+                        kernel.spread(state.q_tensor(), &mut field.q);
+                        energy = kernel.energy(&field.q);
+                        let removed = changed.total() - energy.total();
+                        run.ledger.record_event("end of ramp", run.time, removed);
+                        run.ledger.set_stored(&energy.as_array());
+                        longest = field.longest_step(&kernel);
+                        field.forget_rate();
+                        if let Some(flow) = &mut flow {
+                            flow.coupling.set_weights(&kernel.domain.masses());
+                            flow.update(&kernel, &mut field)?;
+                        }
+                        field.update_rate(&kernel, extra(&flow));
+                    }
                     hooks.report(&Progress {
                         phase: Phase::Discharge,
                         step: run.n_steps,
@@ -293,7 +390,7 @@ impl SwitchedNematic {
             ledger: run.ledger,
             bytes: ByteAccount {
                 fields: field.n_bytes(),
-                geometry: kernel.domain.n_bytes(),
+                geometry: kernel.n_bytes(),
                 flow: flow.as_ref().map_or(0, |f| f.coupling.n_bytes() as u64),
             },
             cpu_seconds: clock.seconds(),
@@ -320,20 +417,14 @@ struct CoupledFlow {
 }
 
 impl CoupledFlow {
-    fn new<T: Real>(
-        switched: &SwitchedNematic,
-        kernel: &Kernel<T>,
-        parameters: &FlowParameters,
-    ) -> Result<Self, NematicError> {
+    fn new(switched: &SwitchedNematic, parameters: &FlowParameters) -> Result<Self, NematicError> {
         let battery = &switched.charged.battery;
-        let mut coupling = FlowCoupling::new(
+        let coupling = FlowCoupling::new(
             battery.grid(),
             battery.particle(),
             &battery.parameters().material,
             parameters,
         )?;
-        // The energy weighs the molecular field by these masses, and so must the force.
-        coupling.set_weights(&kernel.domain.masses());
         Ok(Self {
             coupling,
             max_speed: 0.0,

@@ -80,6 +80,11 @@ impl<'a> RunHooks<'a> {
         self
     }
 
+    /// The interrupt alone, for work on the side.
+    pub(crate) fn without_files(&self) -> RunHooks<'static> {
+        RunHooks::new(&self.interrupt)
+    }
+
     pub(crate) fn is_interrupted(&self) -> bool {
         self.interrupt.is_requested()
     }

@@ -12,7 +12,7 @@ pub(crate) const CHANNELS: [&str; 2] = ["rotation", "viscous"];
 /// How a charge went.
 #[derive(Debug, Clone, Serialize)]
 pub struct ChargeReport {
-    /// Why it ended: "converged", "step-limit" or "interrupted".
+    /// Why it ended: "converged", "step-limit", "interrupted", or "adopted" for a state made elsewhere.
     pub stop: &'static str,
     /// Tilt of the start field that led to the state kept.
     pub seed: f64,

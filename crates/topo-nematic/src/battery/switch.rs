@@ -2,12 +2,14 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::NematicBattery;
 use super::charge::ChargedNematic;
 use crate::anchoring::{Anchoring, SurfacePattern};
 use crate::boundary::{FreeSurface, norm};
-use crate::domain::{STEPS, neighbour};
+use crate::domain::{STEPS, SpecialCell, neighbour};
 use crate::kernel::run::{Kernel, Threads};
 use crate::model::Surface;
+use crate::real::Real;
 use crate::{NematicError, NematicState};
 
 /// What the surface does after the switch.
@@ -17,6 +19,8 @@ use crate::{NematicError, NematicState};
 pub enum SwitchTarget {
     /// Nothing: the director may take any orientation.
     Free(FreeSurface),
+    /// What it did before: the nematic goes on as it is.
+    Keep,
     /// It prefers another pattern.
     Pattern {
         /// The pattern.
@@ -65,7 +69,7 @@ impl ChargedNematic {
         if let Some(ramp) = settings.ramp {
             topo_core::positive("switch.ramp", ramp)?;
         }
-        if self.battery.particle.is_none() {
+        if self.battery.particle.is_none() && settings.to != SwitchTarget::Keep {
             return Err(NematicError::NoParticle {
                 operation: "a switch of the anchoring",
             });
@@ -82,8 +86,14 @@ impl ChargedNematic {
         } else {
             let kernel = self
                 .battery
-                .kernel::<f64>(&settings.surface(), Threads::One);
-            extend_into_cut_cells(self, &kernel, &mut state)
+                .kernel::<f64>(&self.surface_after(&settings), Threads::One);
+            extend_into_cut_cells(
+                &self.battery,
+                self.battery.parameters().anchoring,
+                &kernel,
+                self.energy().total(),
+                &mut state,
+            )
         };
         Ok(SwitchedNematic {
             charged: self.clone(),
@@ -94,13 +104,43 @@ impl ChargedNematic {
     }
 }
 
-impl SwitchSettings {
-    pub(crate) fn surface(&self) -> Surface {
-        match &self.to {
+impl ChargedNematic {
+    /// What the surface does once it is switched.
+    pub(crate) fn surface_after(&self, settings: &SwitchSettings) -> Surface {
+        match &settings.to {
             SwitchTarget::Free(surface) => Surface::Free(*surface),
+            SwitchTarget::Keep => self.battery.charged_surface(),
             SwitchTarget::Pattern { pattern, anchoring } => {
                 Surface::Anchored(pattern.clone(), *anchoring)
             }
+        }
+    }
+
+    /// The end of a ramp, on the links of the anchored surface.
+    pub(crate) fn surface_at_end_of_ramp(&self, settings: &SwitchSettings) -> Surface {
+        match self.surface_after(settings) {
+            Surface::Free(_) => {
+                Surface::Anchored(self.battery.parameters().pattern.clone(), Anchoring::Free)
+            }
+            anchored => anchored,
+        }
+    }
+}
+
+/// Sets the links of `kernel` to the surface to a mixture of those of two others, `share` of the second.
+pub(crate) fn blend<T: Real>(
+    kernel: &mut Kernel<T>,
+    from: &[SpecialCell],
+    to: &[SpecialCell],
+    share: f64,
+) {
+    for ((cell, a), b) in kernel.domain.special.iter_mut().zip(from).zip(to) {
+        let mix = |a: f64, b: f64| (1.0 - share) * a + share * b;
+        cell.sink = mix(a.sink, b.sink);
+        cell.source = std::array::from_fn(|c| mix(a.source[c], b.source[c]));
+        cell.offset = mix(a.offset, b.offset);
+        if cell.sink > 0.0 {
+            cell.anchored = mix(a.sink * a.anchored, b.sink * b.anchored) / cell.sink;
         }
     }
 }
@@ -137,14 +177,17 @@ struct Extension {
 /// Steepest extension tried, as a multiple of the linear one.
 const STEEPEST: f64 = 3.0;
 
-/// Gives values to the cells inside the sphere that `kernel` holds active, and the energy with them.
+/// Gives values to the cells inside the sphere that `kernel` holds active, so that the energy is `goal` if possible; gives the energy.
+///
+/// `anchoring` is what has held the surface so far.
 pub(crate) fn extend_into_cut_cells(
-    charged: &ChargedNematic,
+    battery: &NematicBattery,
+    anchoring: Anchoring,
     kernel: &Kernel<f64>,
+    goal: f64,
     state: &mut NematicState,
 ) -> f64 {
-    let goal = charged.energy().total();
-    let extensions = extensions(charged, kernel, state);
+    let extensions = extensions(battery, anchoring, kernel, state);
     let n = state.grid().n_cells();
     let mut q = vec![0.0; kernel.array_length()];
     kernel.spread(state.q_tensor(), &mut q);
@@ -190,11 +233,11 @@ pub(crate) fn extend_into_cut_cells(
 
 /// Values and slopes of the cells inside the sphere, from the links that cut its surface.
 fn extensions(
-    charged: &ChargedNematic,
+    battery: &NematicBattery,
+    anchoring: Anchoring,
     kernel: &Kernel<f64>,
     state: &NematicState,
 ) -> Vec<Extension> {
-    let battery = &charged.battery;
     let (grid, parameters) = (&battery.grid, battery.parameters());
     let Some(particle) = &battery.particle else {
         return Vec::new();
@@ -221,7 +264,7 @@ fn extensions(
             let there = state.tensor(grid.index(outer));
             let link_share = share.max(crate::boundary::SHORTEST_LINK);
             // With weak anchoring the surface is between what it prefers and what it touches.
-            let (held, _) = parameters.anchoring.conductance(
+            let (held, _) = anchoring.conductance(
                 1.0 / link_share,
                 (end[axis] / norm(end)).abs(),
                 h / parameters.material.elastic_constant,
@@ -240,7 +283,7 @@ fn extensions(
             on_surface = on_surface.map(|x| x / weights);
             inwards = inwards.map(|x| x / weights);
         } else {
-            on_surface = match parameters.anchoring {
+            on_surface = match anchoring {
                 Anchoring::Free => state.tensor(cell),
                 _ => parameters.pattern.q_tensor(order, offset),
             };

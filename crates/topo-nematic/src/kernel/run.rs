@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::domain::{Domain, SpecialCell, Wall, face_index};
 use crate::kernel::combine::{Combine, Factors};
+use crate::kernel::second::SecondElastic;
 use crate::kernel::{Coefficients, Copies, InField, Sides, Stretch, pass};
 use crate::material::Material;
 use crate::real::{Lanes, One, Real, Wide};
@@ -36,6 +37,8 @@ pub(crate) struct Kernel<T> {
     level: Level,
     /// Numbers from one component to the next.
     pub stride: usize,
+    /// Present only when there is a second elastic constant.
+    pub second: Option<SecondElastic>,
 }
 
 /// What a pass writes, and from what.
@@ -56,6 +59,10 @@ impl<T: Real> Kernel<T> {
         threads: Threads,
     ) -> Self {
         let coefficients = Coefficients::new(material, domain.grid.spacing(), &field);
+        let second = material
+            .second_elastic_constant
+            .filter(|constant| *constant != 0.0)
+            .map(|constant| SecondElastic::new(&domain, constant));
         let stride = component_stride(domain.grid.n_cells(), size_of::<T>());
         Self {
             domain,
@@ -65,6 +72,7 @@ impl<T: Real> Kernel<T> {
             threads,
             level: Level::new(),
             stride,
+            second,
         }
     }
 
@@ -72,6 +80,11 @@ impl<T: Real> Kernel<T> {
     pub(crate) fn without_gaps(mut self) -> Self {
         self.stride = self.domain.grid.n_cells();
         self
+    }
+
+    /// Bytes of lists and values.
+    pub(crate) fn n_bytes(&self) -> u64 {
+        self.domain.n_bytes() + self.second.as_ref().map_or(0, SecondElastic::n_bytes)
     }
 
     /// Length of the arrays that passes read and write.
@@ -130,6 +143,7 @@ impl<T: Real> Kernel<T> {
             relaxing: false,
         };
         self.combine::<false, 0, false>(q, &what, h);
+        self.add_second(q, 1.0, h);
     }
 
     /// Writes the combination of `q`, its molecular field, `out` itself (if `OLD`) and the inputs to `out`; cells that are not

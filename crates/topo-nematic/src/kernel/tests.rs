@@ -29,7 +29,8 @@ enum Ball {
 }
 
 /// A kernel with walls along the axes marked: strong, weak, with values that differ from face to face.
-fn kernel<T: Real>(
+fn kernel_with<T: Real>(
+    second: bool,
     cells: [usize; 3],
     walled: [bool; 3],
     ball: Ball,
@@ -37,7 +38,10 @@ fn kernel<T: Real>(
 ) -> Kernel<T> {
     let faces = walled.map(|w| if w { Faces::Wall } else { Faces::Periodic });
     let grid = Grid::new(cells, 0.8, faces).unwrap();
-    let material = Material::default();
+    let material = Material {
+        second_elastic_constant: (second && (ball == Ball::None || walled[0])).then_some(0.6),
+        ..Default::default()
+    };
     let mut walls: Walls = Default::default();
     for axis in 0..3 {
         let area = grid.n_cells() / cells[axis];
@@ -83,6 +87,15 @@ fn kernel<T: Real>(
     )
 }
 
+fn kernel<T: Real>(
+    cells: [usize; 3],
+    walled: [bool; 3],
+    ball: Ball,
+    threads: Threads,
+) -> Kernel<T> {
+    kernel_with(false, cells, walled, ball, threads)
+}
+
 fn field_of<T: Real>(kernel: &Kernel<T>, q: &[T]) -> Vec<T> {
     let mut h = vec![T::of(0.0); q.len()];
     kernel.molecular_field(q, &mut h);
@@ -112,8 +125,11 @@ const CASES: [([usize; 3], [bool; 3], Ball); 6] = [
 
 #[test]
 fn molecular_field_is_the_gradient_of_the_energy() {
-    for (cells, walled, ball) in CASES {
-        let kernel = kernel::<f64>(cells, walled, ball, Threads::One);
+    for (second, (cells, walled, ball)) in [false, true]
+        .into_iter()
+        .flat_map(|s| CASES.map(|c| (s, c)))
+    {
+        let kernel = kernel_with::<f64>(second, cells, walled, ball, Threads::One);
         let n = kernel.stride;
         let q: Vec<f64> = rough(n);
         let h = field_of(&kernel, &q);
