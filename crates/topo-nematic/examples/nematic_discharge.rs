@@ -1,26 +1,28 @@
 //! Charges a colloid with n_q anchoring, switches the anchoring off and follows the discharge.
 //!
 //! ```text
-//! cargo run --release -p topo-nematic --example nematic_discharge -- [charge] [radius] [spacing] [seed] [flow: 1]
+//! cargo run --release -p topo-nematic --example nematic_discharge -- [charge] [radius] [spacing] [seed] [flow: 1] [staircase: 1]
 //! ```
 
 use std::time::Instant;
 
 use topo_core::Interrupt;
 use topo_nematic::{
-    ChargeSettings, DischargeSettings, FlowParameters, NematicAccuracy, NematicBattery,
-    NematicParameters, Progress, RunHooks, SurfacePattern, SwitchSettings,
+    ChargeSettings, DischargeSettings, FlowParameters, FreeSurface, NematicAccuracy,
+    NematicBattery, NematicParameters, Progress, RunHooks, SurfacePattern, SwitchSettings,
+    SwitchTarget,
 };
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let argument =
         |k: usize, default: f64| std::env::args().nth(k).map_or(Ok(default), |a| a.parse());
-    let (charge, radius, spacing, seed, flow) = (
+    let (charge, radius, spacing, seed, flow, staircase) = (
         argument(1, 3.0)? as i32,
         argument(2, 10.0)?,
         argument(3, 1.5)?,
         argument(4, 0.05)?,
         argument(5, 0.0)? > 0.0,
+        argument(6, 0.0)? > 0.0,
     );
     let parameters = NematicParameters {
         radius,
@@ -68,7 +70,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         );
     }
     let clock = Instant::now();
-    let switched = charged.switch(&SwitchSettings::default())?;
+    let switched = charged.switch(&SwitchSettings {
+        to: SwitchTarget::Free(if staircase {
+            FreeSurface::Staircase
+        } else {
+            FreeSurface::CutCell
+        }),
+        ramp: None,
+    })?;
     println!(
         "switched:   F = {:.2}, removed {:.2e}",
         switched.start(),
