@@ -34,12 +34,15 @@ fn report(grid: &Grid, solver: &mut dyn StokesSolver) -> Result<(), Box<dyn Erro
     solver.solve(&force, &mut velocity)?;
     let n_before = solver.n_iterations();
     let n = (20_000_000 / grid.n_cells()).clamp(3, 50);
+    // The fastest of several: other programs can only add.
     let time = |work: &mut dyn FnMut() -> Result<(), topo_nematic::StokesError>| {
-        let clock = CpuClock::start();
+        let mut fastest = f64::INFINITY;
         for _ in 0..n {
+            let clock = CpuClock::start();
             work()?;
+            fastest = fastest.min(clock.seconds());
         }
-        Ok::<_, Box<dyn Error + Send + Sync>>(clock.seconds() / n as f64)
+        Ok::<_, Box<dyn Error + Send + Sync>>(fastest)
     };
     let whole = time(&mut || solver.solve(&force, &mut velocity))?;
     let n_iterations = (solver.n_iterations() - n_before) / n as u64;

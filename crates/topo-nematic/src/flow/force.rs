@@ -6,7 +6,7 @@ use fearless_simd::{Level, Simd, SimdBase, dispatch, f64x8};
 use rayon::prelude::*;
 
 use super::rate::open;
-use super::stencil::{Ends, N_LANES, Row, Stencil, Stored, load, load_row, store};
+use super::stencil::{Ends, N_LANES, Row, Segment, Stencil, Stored, TILE, store};
 use super::terms::{contract, six, stress};
 use crate::grid::Faces;
 use crate::stokes::MacField;
@@ -24,6 +24,8 @@ pub(super) struct Director<'a, T> {
 }
 
 /// Stress of three successive planes, (i, j) entry after entry: the working memory of one thread.
+///
+/// Each row has one value more on either end, and room for whole blocks.
 pub(super) struct Window {
     planes: [Vec<f64>; 3],
 }
@@ -31,13 +33,18 @@ pub(super) struct Window {
 impl Window {
     pub fn new(stencil: &Stencil) -> Self {
         Self {
-            planes: std::array::from_fn(|_| vec![0.0; 9 * stencil.plane()]),
+            planes: std::array::from_fn(|_| vec![0.0; 9 * stencil.cells[1] * width(stencil)]),
         }
     }
 
     pub fn n_bytes(&self) -> usize {
         self.planes.iter().map(|p| p.len() * size_of::<f64>()).sum()
     }
+}
+
+/// Numbers from one row of stress to the next.
+fn width(stencil: &Stencil) -> usize {
+    stencil.cells[0].next_multiple_of(N_LANES) + N_LANES
 }
 
 impl<T: Stored> Director<'_, T> {
@@ -98,48 +105,75 @@ impl<T: Stored> Director<'_, T> {
         }
     }
 
+    /// The five components of a row from `start` on, with one cell more on either end.
     #[inline(always)]
-    fn tensor<S: Simd>(&self, simd: S, field: &[T], row: Row, at: isize) -> [f64x8<S>; 5] {
+    fn tensor(&self, field: &[T], row: Row, start: usize) -> [Segment; 5] {
         let n_cells = field.len() / 5;
-        let n = self.stencil.cells[0];
-        std::array::from_fn(|c| {
-            let field = &field[c * n_cells..(c + 1) * n_cells];
-            load_row(simd, field, row, n, at, Ends::Wrap)
-        })
+        let s = self.stencil;
+        let mut tensor = [const { Segment::zero() }; 5];
+        for c in 0..5 {
+            let values = s.values(&field[c * n_cells..(c + 1) * n_cells], row);
+            tensor[c].add(values, None, start, Ends::Wrap, 1.0);
+        }
+        tensor
     }
 
-    /// H times the share of the cell that is fluid, zero elsewhere whatever is stored there.
+    /// H times the share of the cell that is fluid, zero elsewhere whatever is stored there; and that share.
     #[inline(always)]
-    fn weighted<S: Simd>(&self, simd: S, row: Row, at: isize) -> [f64x8<S>; 5] {
-        let h = self.tensor(simd, self.h, row, at);
-        match self.weights {
-            None => h,
-            Some(weights) => {
-                let weight = load_row(simd, weights, row, self.stencil.cells[0], at, Ends::Wrap);
-                h.map(|h| open(simd, weight, h * weight))
+    fn weighted<S: Simd>(&self, simd: S, row: Row, start: usize) -> ([Segment; 5], Segment) {
+        let mut h = self.tensor(self.h, row, start);
+        let mut weight = Segment::zero();
+        if let Some(weights) = self.weights {
+            weight = Segment::of(self.stencil.values(weights, row), start, Ends::Wrap);
+            for at in (0..TILE + N_LANES).step_by(N_LANES) {
+                let weight = weight.load(simd, at);
+                for c in 0..5 {
+                    let value = h[c].load(simd, at);
+                    h[c].store(open(simd, weight, value * weight), at);
+                }
             }
         }
+        (h, weight)
     }
 
     #[inline(always)]
     fn stress_plane<S: Simd>(&self, simd: S, k: usize, out: &mut [f64]) {
         let s = self.stencil;
-        let (n, plane) = (s.cells[0], s.plane());
+        let (n, width) = (s.cells[0], width(s));
         for j in 0..s.cells[1] {
             let row = s.row([j, k]);
-            for at in (0..n).step_by(N_LANES) {
-                let q = self.tensor(simd, self.q, row, at as isize);
-                let h = self.weighted(simd, row, at as isize);
-                let mut t = stress(q, h, self.alignment);
-                if let Some(weights) = self.weights {
-                    // Q may be anything where there is no fluid.
-                    let weight = load_row(simd, weights, row, n, at as isize, Ends::Wrap);
-                    t = t.map(|t| t.map(|t| open(simd, weight, t)));
+            for start in (0..n).step_by(TILE) {
+                let q = self.tensor(self.q, row, start);
+                let (h, weight) = self.weighted(simd, row, start);
+                for at in (start..n.min(start + TILE)).step_by(N_LANES) {
+                    let i = at - start + 1;
+                    let zero = f64x8::splat(simd, 0.0);
+                    let (mut q_here, mut h_here) = ([zero; 5], [zero; 5]);
+                    for c in 0..5 {
+                        q_here[c] = q[c].load(simd, i);
+                        h_here[c] = h[c].load(simd, i);
+                    }
+                    let t = stress(q_here, h_here, self.alignment);
+                    let fluid = weight.load(simd, i);
+                    for entry in 0..9 {
+                        let mut value = t[entry / 3][entry % 3];
+                        if self.weights.is_some() {
+                            // Q may be anything where there is no fluid.
+                            value = open(simd, fluid, value);
+                        }
+                        let place = (entry * s.cells[1] + j) * width + 1 + at;
+                        value.store_slice(&mut out[place..place + N_LANES]);
+                    }
                 }
-                for (entry, t) in t.into_iter().flatten().enumerate() {
-                    let start = entry * plane + j * n;
-                    store(t, &mut out[start..start + n], at);
-                }
+            }
+            let walled = s.faces[0] == Faces::Wall;
+            for entry in 0..9 {
+                let row = &mut out[(entry * s.cells[1] + j) * width..][..width];
+                (row[0], row[n + 1]) = if walled {
+                    (row[1], row[n])
+                } else {
+                    (row[n], row[1])
+                };
             }
         }
     }
@@ -156,100 +190,144 @@ impl<T: Stored> Director<'_, T> {
         let n = s.cells[0];
         for j in 0..s.cells[1] {
             let range = j * n..(j + 1) * n;
-            for at in (0..n).step_by(N_LANES) {
-                let total = self.force_block(simd, [j, k], stresses, at as isize);
-                for axis in 0..3 {
-                    let on_wall = axis > 0 && s.faces[axis] == Faces::Wall && [j, k][axis - 1] == 0;
-                    let row = &mut force[axis][range.clone()];
-                    if on_wall {
-                        row.fill(0.0);
-                    } else {
-                        store(total[axis], row, at);
+            let t = Stresses::new(s, stresses, j);
+            for start in (0..n).step_by(TILE) {
+                let advection = self.advection(simd, [j, k], start);
+                for at in (start..n.min(start + TILE)).step_by(N_LANES) {
+                    let divergence = t.divergence(simd, at, s.spacing);
+                    for axis in 0..3 {
+                        let moved = advection[axis].load(simd, at - start + 1);
+                        let row = &mut force[axis][range.clone()];
+                        store(divergence[axis] - moved, row, at);
                     }
                 }
             }
-            if s.faces[0] == Faces::Wall {
-                force[0][j * n] = 0.0;
+            for axis in (0..3).filter(|&axis| s.faces[axis] == Faces::Wall) {
+                match axis {
+                    0 => force[0][j * n] = 0.0,
+                    _ if [j, k][axis - 1] == 0 => force[axis][range.clone()].fill(0.0),
+                    _ => {}
+                }
             }
         }
     }
 
-    /// Forces on the lower faces of eight cells.
+    /// H:(Q - Q before), with H of both cells and half weights, across the lower faces of a tile along the three axes.
     #[inline(always)]
-    fn force_block<S: Simd>(
-        &self,
-        simd: S,
-        jk @ [j, _]: [usize; 2],
-        stresses: &[Vec<f64>; 3],
-        i: isize,
-    ) -> [f64x8<S>; 3] {
+    fn advection<S: Simd>(&self, simd: S, jk: [usize; 2], start: usize) -> [Segment; 3] {
         let s = self.stencil;
-        let (n, n_y, plane) = (s.cells[0], s.cells[1], s.plane());
-        let ends = s.cell_ends();
+        let half = 0.5 / s.spacing;
+        let own = s.row(jk);
+        let q = self.tensor(self.q, own, start);
+        let (h, weight) = self.weighted(simd, own, start);
+        let mut out = [const { Segment::zero() }; 3];
+        for axis in 0..3 {
+            // Along x, the cells before are in the same segments, one place earlier.
+            let beside = (axis > 0).then(|| {
+                let row = s.row(s.step(axis, jk, false));
+                (
+                    self.tensor(self.q, row, start),
+                    self.weighted(simd, row, start),
+                )
+            });
+            let (q_before, (h_before, weight_before), shift) = match &beside {
+                Some((q, (h, weight))) => (q, (h, weight), 1),
+                None => (&q, (&h, &weight), 0),
+            };
+            for i in (0..TILE).step_by(N_LANES) {
+                let zero = f64x8::splat(simd, 0.0);
+                let (mut difference, mut sum) = ([zero; 5], [zero; 5]);
+                for c in 0..5 {
+                    difference[c] = q[c].load(simd, i + 1) - q_before[c].load(simd, i + shift);
+                    sum[c] = h[c].load(simd, i + 1) + h_before[c].load(simd, i + shift);
+                }
+                let mut value = contract(six(sum), six(difference)) * half;
+                if self.weights.is_some() {
+                    let both = weight.load(simd, i + 1) * weight_before.load(simd, i + shift);
+                    value = open(simd, both, value);
+                }
+                out[axis].store(value, i + 1);
+            }
+        }
+        out
+    }
+}
+
+/// Rows of stress around row j, in the plane below, its own, and the one above.
+struct Stresses<'a> {
+    planes: &'a [Vec<f64>; 3],
+    /// Where row j starts, and the rows before and after it.
+    rows: [usize; 3],
+    /// Numbers from one entry of the tensor to the next.
+    entry: usize,
+}
+
+impl<'a> Stresses<'a> {
+    #[inline(always)]
+    fn new(s: &Stencil, planes: &'a [Vec<f64>; 3], j: usize) -> Self {
+        let (n_y, width) = (s.cells[1], width(s));
         let walled = s.faces[1] == Faces::Wall;
-        let above = if j + 1 < n_y {
-            j + 1
-        } else if walled {
-            j
-        } else {
-            0
-        };
-        let below = if j > 0 {
+        let last = n_y - 1;
+        let before = if j > 0 {
             j - 1
         } else if walled {
             0
         } else {
-            n_y - 1
+            last
         };
-        // Entry (a, b) of the stress in plane k + dz - 1, row `row`, shifted along x.
-        let t = |a: usize, b: usize, dz: usize, row: usize, shift: isize| {
-            let start = (3 * a + b) * plane + row * n;
-            load(simd, &stresses[dz][start..start + n], i + shift, ends)
+        let after = if j < last {
+            j + 1
+        } else if walled {
+            last
+        } else {
+            0
         };
-        let (whole, quarter) = (1.0 / s.spacing, 0.25 / s.spacing);
-        let x = (t(0, 0, 1, j, -1) - t(0, 0, 1, j, 0)) * whole
-            + ((t(1, 0, 1, below, -1) + t(1, 0, 1, below, 0))
-                - (t(1, 0, 1, above, -1) + t(1, 0, 1, above, 0))
-                + (t(2, 0, 0, j, -1) + t(2, 0, 0, j, 0))
-                - (t(2, 0, 2, j, -1) + t(2, 0, 2, j, 0)))
+        Self {
+            planes,
+            rows: [before * width, j * width, after * width],
+            entry: n_y * width,
+        }
+    }
+
+    /// T_ab in the eight cells from `at` on, which is place 1 of the row: `place` counts from the row before and the plane below.
+    #[inline(always)]
+    fn at<S: Simd>(
+        &self,
+        simd: S,
+        [a, b]: [usize; 2],
+        [row, plane]: [usize; 2],
+        at: usize,
+    ) -> f64x8<S> {
+        let start = (3 * a + b) * self.entry + self.rows[row] + at;
+        f64x8::from_slice(simd, &self.planes[plane][start..start + N_LANES])
+    }
+
+    /// -d_j T_ji on the lower faces of the eight cells from `at` on.
+    #[inline(always)]
+    fn divergence<S: Simd>(&self, simd: S, at: usize, spacing: f64) -> [f64x8<S>; 3] {
+        let (whole, quarter) = (1.0 / spacing, 0.25 / spacing);
+        let (before, here, after) = (at, at + 1, at + 2);
+        let (xx, yy, zz) = ([0, 0], [1, 1], [2, 2]);
+        let own = [1, 1];
+        let (south, north, down, up) = ([0, 1], [2, 1], [1, 0], [1, 2]);
+        let x = (self.at(simd, xx, own, before) - self.at(simd, xx, own, here)) * whole
+            + ((self.at(simd, [1, 0], south, before) + self.at(simd, [1, 0], south, here))
+                - (self.at(simd, [1, 0], north, before) + self.at(simd, [1, 0], north, here))
+                + (self.at(simd, [2, 0], down, before) + self.at(simd, [2, 0], down, here))
+                - (self.at(simd, [2, 0], up, before) + self.at(simd, [2, 0], up, here)))
                 * quarter;
-        let y = (t(1, 1, 1, below, 0) - t(1, 1, 1, j, 0)) * whole
-            + ((t(0, 1, 1, below, -1) + t(0, 1, 1, j, -1))
-                - (t(0, 1, 1, below, 1) + t(0, 1, 1, j, 1))
-                + (t(2, 1, 0, below, 0) + t(2, 1, 0, j, 0))
-                - (t(2, 1, 2, below, 0) + t(2, 1, 2, j, 0)))
+        let y = (self.at(simd, yy, south, here) - self.at(simd, yy, own, here)) * whole
+            + ((self.at(simd, [0, 1], south, before) + self.at(simd, [0, 1], own, before))
+                - (self.at(simd, [0, 1], south, after) + self.at(simd, [0, 1], own, after))
+                + (self.at(simd, [2, 1], [0, 0], here) + self.at(simd, [2, 1], down, here))
+                - (self.at(simd, [2, 1], [0, 2], here) + self.at(simd, [2, 1], up, here)))
                 * quarter;
-        let z = (t(2, 2, 0, j, 0) - t(2, 2, 1, j, 0)) * whole
-            + ((t(0, 2, 0, j, -1) + t(0, 2, 1, j, -1)) - (t(0, 2, 0, j, 1) + t(0, 2, 1, j, 1))
-                + (t(1, 2, 0, below, 0) + t(1, 2, 1, below, 0))
-                - (t(1, 2, 0, above, 0) + t(1, 2, 1, above, 0)))
+        let z = (self.at(simd, zz, down, here) - self.at(simd, zz, own, here)) * whole
+            + ((self.at(simd, [0, 2], down, before) + self.at(simd, [0, 2], own, before))
+                - (self.at(simd, [0, 2], down, after) + self.at(simd, [0, 2], own, after))
+                + (self.at(simd, [1, 2], [0, 0], here) + self.at(simd, [1, 2], south, here))
+                - (self.at(simd, [1, 2], [2, 0], here) + self.at(simd, [1, 2], north, here)))
                 * quarter;
-        // Advection: each face moves Q of both its cells by half the difference.
-        let own = s.row(jk);
-        let (q, h) = (
-            six(self.tensor(simd, self.q, own, i)),
-            six(self.weighted(simd, own, i)),
-        );
-        let half = 0.5 / s.spacing;
-        let weight = |row, at| match self.weights {
-            Some(weights) => load_row(simd, weights, row, n, at, Ends::Wrap),
-            None => f64x8::splat(simd, 1.0),
-        };
-        let advection = |row: Row, at: isize| {
-            let q_before = six(self.tensor(simd, self.q, row, at));
-            let h_before = six(self.weighted(simd, row, at));
-            let difference = std::array::from_fn(|c| q[c] - q_before[c]);
-            let sum = std::array::from_fn(|c| h[c] + h_before[c]);
-            let value = contract(sum, difference) * half;
-            match self.weights {
-                None => value,
-                Some(_) => open(simd, weight(own, i) * weight(row, at), value),
-            }
-        };
-        [
-            x - advection(own, i - 1),
-            y - advection(s.row(s.step(1, jk, false)), i),
-            z - advection(s.row(s.step(2, jk, false)), i),
-        ]
+        [x, y, z]
     }
 }

@@ -3,7 +3,7 @@
 use fearless_simd::{Level, Simd, SimdBase, dispatch, f64x8};
 use rayon::prelude::*;
 
-use super::stencil::{Ends, N_LANES, Row, Stencil, Stored, load, load_row, store};
+use super::stencil::{Ends, N_LANES, Segment, Stencil, Stored, TILE, load, store};
 use super::terms::turn_and_align;
 use crate::stokes::MacField;
 
@@ -41,10 +41,17 @@ impl Flow<'_> {
         k: usize,
         mut rate: [&mut [T]; 5],
     ) {
-        let n_x = self.stencil.cells[0];
+        let n = self.stencil.cells[0];
         for j in 0..self.stencil.cells[1] {
-            let range = j * n_x..(j + 1) * n_x;
-            let rows = rate.each_mut().map(|r| &mut r[range.clone()]);
+            let [r0, r1, r2, r3, r4] = &mut rate;
+            let range = j * n..(j + 1) * n;
+            let rows = [
+                &mut r0[range.clone()],
+                &mut r1[range.clone()],
+                &mut r2[range.clone()],
+                &mut r3[range.clone()],
+                &mut r4[range],
+            ];
             self.add_row(simd, q, [j, k], rows);
         }
     }
@@ -59,56 +66,93 @@ impl Flow<'_> {
     ) {
         let s = self.stencil;
         let n = s.cells[0];
+        let rows = GradientRows::new(s, self.velocity, jk);
         let half = 0.5 / s.spacing;
-        let gradient = GradientRows::new(s, jk);
-        // Rows of Q: the cell's, and before and after it along y and z.
         let own = s.row(jk);
-        let beside = [1, 2].map(|axis| [false, true].map(|up| s.row(s.step(axis, jk, up))));
-        let [u_x, u_y, u_z] = self.velocity.components();
-        for at in (0..n).step_by(N_LANES) {
-            let i = at as isize;
-            // Velocities through the six faces, halved; closed where a neighbour is not fluid.
-            let face =
-                |field: &[f64], row, at| load_row(simd, field, row, n, at, Ends::Wrap) * half;
-            let mut through = [
-                [face(u_x, own, i), face(u_x, own, i + 1)],
-                [face(u_y, own, i), face(u_y, beside[0][1], i)],
-                [face(u_z, own, i), face(u_z, beside[1][1], i)],
-            ];
-            let mut fluid = None;
-            if let Some(weights) = self.weights {
-                let weight = |row, at| load_row(simd, weights, row, n, at, Ends::Wrap);
-                let mine = weight(own, i);
-                let others = [
-                    [weight(own, i - 1), weight(own, i + 1)],
-                    beside[0].map(|row| weight(row, i)),
-                    beside[1].map(|row| weight(row, i)),
+        let (south, north) = (s.row(s.step(1, jk, false)), s.row(s.step(1, jk, true)));
+        let (down, up) = (s.row(s.step(2, jk, false)), s.row(s.step(2, jk, true)));
+        for start in (0..n).step_by(TILE) {
+            let gradient = GradientTile::new(s, &rows, start);
+            let end = n.min(start + TILE);
+            let weight = self
+                .weights
+                .map(|w| Segment::of(s.values(w, own), start, Ends::Wrap));
+            // Half the velocities through the six faces, cell after cell; none where a neighbour is not fluid.
+            let mut through = [[[0.0; TILE]; 2]; 3];
+            for at in (start..end).step_by(N_LANES) {
+                let i = at - start;
+                let u = [
+                    [
+                        gradient.u_x.load(simd, i + 1),
+                        gradient.u_x.load(simd, i + 2),
+                    ],
+                    [load(simd, rows.y[0], at), load(simd, rows.y[1], at)],
+                    [load(simd, rows.z[0], at), load(simd, rows.z[1], at)],
                 ];
                 for axis in 0..3 {
                     for side in 0..2 {
-                        through[axis][side] =
-                            open(simd, mine * others[axis][side], through[axis][side]);
+                        let mut flux = u[axis][side] * half;
+                        if let (Some(mine), Some(weights)) = (&weight, self.weights) {
+                            let beside = match (axis, side) {
+                                (0, 0) => mine.load(simd, i),
+                                (0, _) => mine.load(simd, i + 2),
+                                (1, 0) => load(simd, s.values(weights, south), at),
+                                (1, _) => load(simd, s.values(weights, north), at),
+                                (_, 0) => load(simd, s.values(weights, down), at),
+                                (_, _) => load(simd, s.values(weights, up), at),
+                            };
+                            flux = open(simd, mine.load(simd, i + 1) * beside, flux);
+                        }
+                        flux.store_slice(&mut through[axis][side][i..i + N_LANES]);
                     }
                 }
-                fluid = Some(mine);
             }
-            let value = |c: usize, row, at| load_row(simd, q[c], row, n, at, Ends::Wrap);
-            let centre: [f64x8<S>; 5] = std::array::from_fn(|c| value(c, own, i));
-            let turned = turn_and_align(centre, self.gradient(simd, &gradient, i), self.alignment);
-            for c in 0..5 {
-                let mid = centre[c];
-                let advected = through[0][0] * (mid - value(c, own, i - 1))
-                    + through[0][1] * (value(c, own, i + 1) - mid)
-                    + through[1][0] * (mid - value(c, beside[0][0], i))
-                    + through[1][1] * (value(c, beside[0][1], i) - mid)
-                    + through[2][0] * (mid - value(c, beside[1][0], i))
-                    + through[2][1] * (value(c, beside[1][1], i) - mid);
-                let mut change = turned[c] - advected;
-                if let Some(mine) = fluid {
-                    change = open(simd, mine, change);
+            // The row itself, to turn and align it, and to advect it along x.
+            let centre = [
+                Segment::of(s.values(q[0], own), start, Ends::Wrap),
+                Segment::of(s.values(q[1], own), start, Ends::Wrap),
+                Segment::of(s.values(q[2], own), start, Ends::Wrap),
+                Segment::of(s.values(q[3], own), start, Ends::Wrap),
+                Segment::of(s.values(q[4], own), start, Ends::Wrap),
+            ];
+            let mut turned = [[0.0; TILE]; 5];
+            for at in (start..end).step_by(N_LANES) {
+                let i = at - start;
+                let mut here = [f64x8::splat(simd, 0.0); 5];
+                for c in 0..5 {
+                    here[c] = centre[c].load(simd, i + 1);
                 }
-                let before = load(simd, &*rate[c], i, Ends::Wrap);
-                store(before + change, rate[c], at);
+                let w = gradient.at(simd, &rows, at, i);
+                let change = turn_and_align(here, w, self.alignment);
+                for c in 0..5 {
+                    change[c].store_slice(&mut turned[c][i..i + N_LANES]);
+                }
+            }
+            for c in 0..5 {
+                let beside = [
+                    s.values(q[c], south),
+                    s.values(q[c], north),
+                    s.values(q[c], down),
+                    s.values(q[c], up),
+                ];
+                for at in (start..end).step_by(N_LANES) {
+                    let i = at - start;
+                    let flux = |axis: usize, side: usize| &through[axis][side][i..i + N_LANES];
+                    let mid = centre[c].load(simd, i + 1);
+                    let advected = f64x8::from_slice(simd, flux(0, 0))
+                        * (mid - centre[c].load(simd, i))
+                        + f64x8::from_slice(simd, flux(0, 1)) * (centre[c].load(simd, i + 2) - mid)
+                        + f64x8::from_slice(simd, flux(1, 0)) * (mid - load(simd, beside[0], at))
+                        + f64x8::from_slice(simd, flux(1, 1)) * (load(simd, beside[1], at) - mid)
+                        + f64x8::from_slice(simd, flux(2, 0)) * (mid - load(simd, beside[2], at))
+                        + f64x8::from_slice(simd, flux(2, 1)) * (load(simd, beside[3], at) - mid);
+                    let turned = f64x8::from_slice(simd, &turned[c][i..i + N_LANES]);
+                    let mut change = turned - advected;
+                    if let Some(mine) = &weight {
+                        change = open(simd, mine.load(simd, i + 1), change);
+                    }
+                    store(load(simd, &*rate[c], at) + change, rate[c], at);
+                }
             }
         }
     }
@@ -116,81 +160,130 @@ impl Flow<'_> {
     /// W_ij = d_i u_j at the centres of row (j, k).
     #[inline(always)]
     pub fn gradient_row<S: Simd>(&self, simd: S, jk: [usize; 2], out: &mut [[[f64; 3]; 3]]) {
-        let rows = GradientRows::new(self.stencil, jk);
-        for (block, out) in out.chunks_mut(N_LANES).enumerate() {
-            let w = self.gradient(simd, &rows, (block * N_LANES) as isize);
-            for (l, out) in out.iter_mut().enumerate() {
-                *out = w.map(|w| w.map(|w| w[l]));
+        let rows = GradientRows::new(self.stencil, self.velocity, jk);
+        for (tile, out) in out.chunks_mut(TILE).enumerate() {
+            let start = tile * TILE;
+            let gradient = GradientTile::new(self.stencil, &rows, start);
+            for (block, out) in out.chunks_mut(N_LANES).enumerate() {
+                let i = block * N_LANES;
+                let w = gradient.at(simd, &rows, start + i, i);
+                for (l, out) in out.iter_mut().enumerate() {
+                    *out = w.map(|w| w.map(|w| w[l]));
+                }
             }
         }
     }
+}
 
-    /// W_ij = d_i u_j at the centres: off the diagonal, the mean of the four nearest differences.
-    #[inline(always)]
-    fn gradient<S: Simd>(&self, simd: S, rows: &GradientRows, i: isize) -> [[f64x8<S>; 3]; 3] {
-        let s = self.stencil;
-        let n = s.cells[0];
-        let [u_x, u_y, u_z] = self.velocity.components();
-        let (whole, quarter) = (1.0 / s.spacing, 0.25 / s.spacing);
-        let at = |field: &[f64], row, i, ends| load_row(simd, field, row, n, i, ends);
-        // Sum over the two faces of a cell along x.
-        let pair = |row| at(u_x, row, i, Ends::Wrap) + at(u_x, row, i + 1, Ends::Wrap);
-        // Difference along x, summed over the two faces of a cell along y or z.
-        let along = |field: &[f64], [lower, upper]: [_; 2], ends| {
-            (at(field, lower, i + 1, ends) + at(field, upper, i + 1, ends))
-                - (at(field, lower, i - 1, ends) + at(field, upper, i - 1, ends))
+/// Rows of the velocity that its gradient in row (j, k) needs.
+struct GradientRows<'a> {
+    u_x: &'a [f64],
+    /// u_y on the lower and upper y face, and u_z on the lower and upper z face.
+    y: [&'a [f64]; 2],
+    z: [&'a [f64]; 2],
+    /// u_x below and above along y, and along z.
+    x_y: [Mirrored<'a>; 2],
+    x_z: [Mirrored<'a>; 2],
+    /// u_z below and above along y, each on both z faces; u_y below and above along z, each on both y faces.
+    z_y: [[Mirrored<'a>; 2]; 2],
+    y_z: [[Mirrored<'a>; 2]; 2],
+}
+
+/// A row, and how a wall reflects it.
+type Mirrored<'a> = (&'a [f64], Option<[f64; 2]>);
+
+impl<'a> GradientRows<'a> {
+    fn new(s: &Stencil, velocity: &'a MacField, jk: [usize; 2]) -> Self {
+        let u = velocity.components();
+        let faces = |axis| [jk, s.step(axis, jk, true)];
+        let sides = [false, true];
+        let beside = |axis, jk, up, component: usize| {
+            let row = s.beside(axis, jk, up, component);
+            (s.values(u[component], row), row.mirror)
         };
-        // Difference between the rows above and below, each summed over two faces.
-        let across = |field: &[f64], [below, above]: [[_; 2]; 2]| {
-            (at(field, above[0], i, Ends::Wrap) + at(field, above[1], i, Ends::Wrap))
-                - (at(field, below[0], i, Ends::Wrap) + at(field, below[1], i, Ends::Wrap))
-        };
-        let own = rows.y[0];
-        [
-            [
-                (at(u_x, own, i + 1, Ends::Wrap) - at(u_x, own, i, Ends::Wrap)) * whole,
-                along(u_y, rows.y, s.velocity_ends(1)) * quarter,
-                along(u_z, rows.z, s.velocity_ends(2)) * quarter,
-            ],
-            [
-                (pair(rows.x_y[1]) - pair(rows.x_y[0])) * quarter,
-                (at(u_y, rows.y[1], i, Ends::Wrap) - at(u_y, own, i, Ends::Wrap)) * whole,
-                across(u_z, rows.z_y) * quarter,
-            ],
-            [
-                (pair(rows.x_z[1]) - pair(rows.x_z[0])) * quarter,
-                across(u_y, rows.y_z) * quarter,
-                (at(u_z, rows.z[1], i, Ends::Wrap) - at(u_z, own, i, Ends::Wrap)) * whole,
-            ],
-        ]
+        Self {
+            u_x: s.values(u[0], s.row(jk)),
+            y: faces(1).map(|jk| s.values(u[1], s.row(jk))),
+            z: faces(2).map(|jk| s.values(u[2], s.row(jk))),
+            x_y: sides.map(|up| beside(1, jk, up, 0)),
+            x_z: sides.map(|up| beside(2, jk, up, 0)),
+            z_y: sides.map(|up| faces(2).map(|jk| beside(1, jk, up, 2))),
+            y_z: sides.map(|up| faces(1).map(|jk| beside(2, jk, up, 1))),
+        }
     }
 }
 
-/// Rows that the velocity gradient of row (j, k) needs.
-struct GradientRows {
-    /// Of the lower and upper y face, and of the lower and upper z face.
-    y: [Row; 2],
-    z: [Row; 2],
-    /// u_x below and above along y, and along z.
-    x_y: [Row; 2],
-    x_z: [Row; 2],
-    /// u_z below and above along y, each on both z faces; u_y below and above along z, each on both y faces.
-    z_y: [[Row; 2]; 2],
-    y_z: [[Row; 2]; 2],
+/// Combinations of these rows in one tile: off the diagonal, W is the mean of the four nearest differences.
+struct GradientTile {
+    u_x: Segment,
+    /// u_y and u_z summed over the two faces of a cell.
+    sum_y: Segment,
+    sum_z: Segment,
+    /// u_x above less below, along y and along z.
+    x_y: Segment,
+    x_z: Segment,
+    /// u_z above less below along y, u_y along z, summed over the two faces of a cell.
+    z_y: Segment,
+    y_z: Segment,
+    whole: f64,
+    quarter: f64,
 }
 
-impl GradientRows {
-    fn new(s: &Stencil, jk: [usize; 2]) -> Self {
-        let faces = |axis| [jk, s.step(axis, jk, true)];
-        let sides = [false, true];
-        Self {
-            y: faces(1).map(|jk| s.row(jk)),
-            z: faces(2).map(|jk| s.row(jk)),
-            x_y: sides.map(|up| s.beside(1, jk, up, 0)),
-            x_z: sides.map(|up| s.beside(2, jk, up, 0)),
-            z_y: sides.map(|up| faces(2).map(|jk| s.beside(1, jk, up, 2))),
-            y_z: sides.map(|up| faces(1).map(|jk| s.beside(2, jk, up, 1))),
+impl GradientTile {
+    #[inline(always)]
+    fn new(s: &Stencil, rows: &GradientRows, start: usize) -> Self {
+        let mut tile = Self {
+            u_x: Segment::of(rows.u_x, start, Ends::Wrap),
+            sum_y: Segment::zero(),
+            sum_z: Segment::zero(),
+            x_y: Segment::zero(),
+            x_z: Segment::zero(),
+            z_y: Segment::zero(),
+            y_z: Segment::zero(),
+            whole: 1.0 / s.spacing,
+            quarter: 0.25 / s.spacing,
+        };
+        let (ends_y, ends_z) = (s.velocity_ends(1), s.velocity_ends(2));
+        for side in 0..2 {
+            tile.sum_y.add(rows.y[side], None, start, ends_y, 1.0);
+            tile.sum_z.add(rows.z[side], None, start, ends_z, 1.0);
+            let sign = [-1.0, 1.0][side];
+            let (row, mirror) = rows.x_y[side];
+            tile.x_y.add(row, mirror, start, Ends::Wrap, sign);
+            let (row, mirror) = rows.x_z[side];
+            tile.x_z.add(row, mirror, start, Ends::Wrap, sign);
+            for face in 0..2 {
+                let (row, mirror) = rows.z_y[side][face];
+                tile.z_y.add(row, mirror, start, Ends::Wrap, sign);
+                let (row, mirror) = rows.y_z[side][face];
+                tile.y_z.add(row, mirror, start, Ends::Wrap, sign);
+            }
         }
+        tile
+    }
+
+    /// W_ij = d_i u_j in the eight cells from `at` on, which is place i of the tile.
+    #[inline(always)]
+    fn at<S: Simd>(&self, simd: S, rows: &GradientRows, at: usize, i: usize) -> [[f64x8<S>; 3]; 3] {
+        let (whole, quarter) = (self.whole, self.quarter);
+        let u_x = &self.u_x;
+        [
+            [
+                (u_x.load(simd, i + 2) - u_x.load(simd, i + 1)) * whole,
+                (self.sum_y.load(simd, i + 2) - self.sum_y.load(simd, i)) * quarter,
+                (self.sum_z.load(simd, i + 2) - self.sum_z.load(simd, i)) * quarter,
+            ],
+            [
+                (self.x_y.load(simd, i + 1) + self.x_y.load(simd, i + 2)) * quarter,
+                (load(simd, rows.y[1], at) - load(simd, rows.y[0], at)) * whole,
+                self.z_y.load(simd, i + 1) * quarter,
+            ],
+            [
+                (self.x_z.load(simd, i + 1) + self.x_z.load(simd, i + 2)) * quarter,
+                self.y_z.load(simd, i + 1) * quarter,
+                (load(simd, rows.z[1], at) - load(simd, rows.z[0], at)) * whole,
+            ],
+        ]
     }
 }
 

@@ -1,6 +1,6 @@
 //! Rows of the grid and what lies beside them, eight cells at a time.
 
-use fearless_simd::{Simd, SimdBase, f64x8};
+use fearless_simd::{Simd, SimdBase, f32x8, f64x8};
 
 use crate::grid::{Faces, Grid};
 
@@ -11,17 +11,48 @@ pub(super) const N_LANES: usize = 8;
 pub trait Stored: Copy + Send + Sync + Into<f64> + 'static {
     /// Rounds to this type.
     fn narrow(x: f64) -> Self;
+
+    /// Eight successive numbers.
+    fn load<S: Simd>(simd: S, from: &[Self]) -> f64x8<S>;
+
+    /// Rounds to eight successive numbers.
+    fn store<S: Simd>(values: f64x8<S>, to: &mut [Self]);
 }
 
 impl Stored for f64 {
+    #[inline(always)]
     fn narrow(x: f64) -> Self {
         x
+    }
+
+    #[inline(always)]
+    fn load<S: Simd>(simd: S, from: &[Self]) -> f64x8<S> {
+        f64x8::from_slice(simd, from)
+    }
+
+    #[inline(always)]
+    fn store<S: Simd>(values: f64x8<S>, to: &mut [Self]) {
+        values.store_slice(to);
     }
 }
 
 impl Stored for f32 {
+    #[inline(always)]
     fn narrow(x: f64) -> Self {
         x as f32
+    }
+
+    #[inline(always)]
+    fn load<S: Simd>(simd: S, from: &[Self]) -> f64x8<S> {
+        let (low, high) = simd.widen_f32x8(f32x8::from_slice(simd, from));
+        simd.combine_f64x4(low, high)
+    }
+
+    #[inline(always)]
+    fn store<S: Simd>(values: f64x8<S>, to: &mut [Self]) {
+        for (x, value) in to.iter_mut().zip(values.to_array()) {
+            *x = value as f32;
+        }
     }
 }
 
@@ -59,6 +90,12 @@ impl Stencil {
             spacing: grid.spacing(),
             wall_velocity,
         }
+    }
+
+    /// The values of `field` in `row`.
+    #[inline(always)]
+    pub fn values<'a, T>(&self, field: &'a [T], row: Row) -> &'a [T] {
+        &field[row.start..row.start + self.cells[0]]
     }
 
     /// Cells of a plane.
@@ -106,83 +143,107 @@ impl Stencil {
             },
         }
     }
+}
 
-    /// What lies beyond the ends of a row of cell values that a wall reflects.
-    pub fn cell_ends(&self) -> Ends {
-        match self.faces[0] {
-            Faces::Periodic => Ends::Wrap,
-            Faces::Wall => Ends::Mirror {
-                factor: 1.0,
-                shifts: [0.0; 2],
-            },
+/// Part of a row with one value more on either end: cell `start` + i of the row is at place i + 1.
+pub(super) struct Segment([f64; TILE + N_LANES]);
+
+/// Cells along x that are treated in one go: what they need fits in the first cache, on the stack.
+pub(super) const TILE: usize = 64;
+
+impl Segment {
+    #[inline(always)]
+    pub const fn zero() -> Self {
+        Self([0.0; TILE + N_LANES])
+    }
+
+    /// The values of one row from `start` on.
+    #[inline(always)]
+    pub fn of<T: Stored>(row: &[T], start: usize, ends: Ends) -> Self {
+        let mut segment = Self::zero();
+        segment.add(row, None, start, ends, 1.0);
+        segment
+    }
+
+    /// Adds `factor` times a row, reflected by `mirror`.
+    #[inline(always)]
+    pub fn add<T: Stored>(
+        &mut self,
+        row: &[T],
+        mirror: Option<[f64; 2]>,
+        start: usize,
+        ends: Ends,
+        factor: f64,
+    ) {
+        let [slope, shift] = mirror.map_or([factor, 0.0], |m| m.map(|m| factor * m));
+        let end = row.len().min(start + TILE);
+        let n = end - start;
+        for (x, value) in self.0[1..=n].iter_mut().zip(&row[start..end]) {
+            let value: f64 = (*value).into();
+            *x += slope * value + shift;
         }
+        self.0[0] += slope * beyond(row, start as isize - 1, ends) + shift;
+        self.0[n + 1] += slope * beyond(row, end as isize, ends) + shift;
+    }
+
+    /// The eight values from place `at` of the segment on.
+    #[inline(always)]
+    pub fn load<S: Simd>(&self, simd: S, at: usize) -> f64x8<S> {
+        f64x8::from_slice(simd, &self.0[at..at + N_LANES])
+    }
+
+    /// Writes eight values from place `at` of the segment on.
+    #[inline(always)]
+    pub fn store<S: Simd>(&mut self, values: f64x8<S>, at: usize) {
+        values.store_slice(&mut self.0[at..at + N_LANES]);
     }
 }
 
-/// Eight values from place `at` of a row of n; beyond its ends as `ends` says, and anything from place n + 1 on.
+/// One value of a row or just beyond its ends.
 #[inline(always)]
-pub(super) fn load<S: Simd, T: Stored>(simd: S, row: &[T], at: isize, ends: Ends) -> f64x8<S> {
-    let n = row.len() as isize;
-    let mut values = [0.0; N_LANES];
-    if at >= 0 && at + N_LANES as isize <= n {
-        let from = &row[at as usize..at as usize + N_LANES];
-        for l in 0..N_LANES {
-            values[l] = from[l].into();
-        }
-    } else {
-        for (l, value) in values.iter_mut().enumerate() {
-            *value = beyond(row, at + l as isize, ends);
-        }
-    }
-    f64x8::load_array(simd, values)
-}
-
-/// One value of a row or beyond its ends.
-#[inline(never)]
 fn beyond<T: Stored>(row: &[T], at: isize, ends: Ends) -> f64 {
-    let n = row.len() as isize;
-    if (0..n).contains(&at) {
-        return row[at as usize].into();
+    let n = row.len();
+    if let Some(value) = usize::try_from(at).ok().and_then(|at| row.get(at)) {
+        return (*value).into();
     }
+    let upper = at > 0;
     match ends {
-        Ends::Wrap => row[at.rem_euclid(n) as usize].into(),
+        Ends::Wrap => row[if upper { 0 } else { n - 1 }].into(),
         Ends::Mirror { factor, shifts } => {
-            let upper = at >= n;
-            let end: f64 = row[if upper { n as usize - 1 } else { 0 }].into();
+            let end: f64 = row[if upper { n - 1 } else { 0 }].into();
             factor * end + shifts[usize::from(upper)]
         }
     }
 }
 
-/// Eight values of the row `at` of `field`, reflected if the row is.
+/// The eight values of a row from place `at` on; zero beyond its end.
 #[inline(always)]
-pub(super) fn load_row<S: Simd, T: Stored>(
-    simd: S,
-    field: &[T],
-    row: Row,
-    n: usize,
-    at: isize,
-    ends: Ends,
-) -> f64x8<S> {
-    let values = load(simd, &field[row.start..row.start + n], at, ends);
-    match row.mirror {
-        None => values,
-        Some([factor, shift]) => values * factor + shift,
+pub(super) fn load<S: Simd, T: Stored>(simd: S, row: &[T], at: usize) -> f64x8<S> {
+    match row.get(at..at + N_LANES) {
+        Some(within) => T::load(simd, within),
+        None => f64x8::load_array(simd, tail(row, at)),
     }
+}
+
+#[cold]
+#[inline(never)]
+fn tail<T: Stored>(row: &[T], at: usize) -> [f64; N_LANES] {
+    let mut values = [0.0; N_LANES];
+    for (value, x) in values.iter_mut().zip(&row[at..]) {
+        *value = (*x).into();
+    }
+    values
 }
 
 /// Writes the values that lie within a row from place `at` on.
 #[inline(always)]
 pub(super) fn store<S: Simd, T: Stored>(values: f64x8<S>, row: &mut [T], at: usize) {
-    let values = values.to_array();
-    let n = N_LANES.min(row.len() - at);
-    if n == N_LANES {
-        for l in 0..N_LANES {
-            row[at + l] = T::narrow(values[l]);
-        }
-    } else {
-        for (x, value) in row[at..].iter_mut().zip(values) {
-            *x = T::narrow(value);
+    match row.get_mut(at..at + N_LANES) {
+        Some(within) => T::store(values, within),
+        None => {
+            for (x, value) in row[at..].iter_mut().zip(values.to_array()) {
+                *x = T::narrow(value);
+            }
         }
     }
 }

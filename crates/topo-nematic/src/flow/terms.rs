@@ -31,34 +31,37 @@ pub(super) fn turn_and_align<S: Simd>(
     chi: f64,
 ) -> [f64x8<S>; 5] {
     let q = six(q);
-    let half = |i: usize, j: usize| (w[i][j] + w[j][i]) * 0.5;
-    let d = [
-        half(0, 0),
-        half(0, 1),
-        half(0, 2),
-        half(1, 1),
-        half(1, 2),
-        half(2, 2),
-    ];
-    let m = |i: usize, j: usize| {
-        // Omega + chi D.
-        let (plus, minus) = (0.5 * (chi + 1.0), 0.5 * (chi - 1.0));
-        w[i][j] * plus + w[j][i] * minus
-    };
-    let product = |i: usize, j: usize| {
-        q[PLACE[i][0]] * m(0, j) + q[PLACE[i][1]] * m(1, j) + q[PLACE[i][2]] * m(2, j)
-    };
+    let (plus, minus) = (0.5 * (chi + 1.0), 0.5 * (chi - 1.0));
+    let mut d = q;
+    let mut m = w;
+    // Loops, not closures: only what is surely inlined runs on the vector unit.
+    for i in 0..3 {
+        for j in 0..3 {
+            d[PLACE[i][j]] = (w[i][j] + w[j][i]) * 0.5;
+            m[i][j] = w[i][j] * plus + w[j][i] * minus;
+        }
+    }
+    let mut product = w;
+    for i in 0..3 {
+        for j in 0..3 {
+            product[i][j] =
+                q[PLACE[i][0]] * m[0][j] + q[PLACE[i][1]] * m[1][j] + q[PLACE[i][2]] * m[2][j];
+        }
+    }
     let stretch = contract(q, d) * (2.0 * chi);
-    let rate = |i: usize, j: usize| {
+    let trace = stretch * (1.0 / 3.0);
+    let mut rate = [stretch; 5];
+    for (c, (i, j)) in [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2)]
+        .into_iter()
+        .enumerate()
+    {
         let place = PLACE[i][j];
-        let trace = if i == j {
-            stretch * (1.0 / 3.0)
-        } else {
-            stretch * 0.0
-        };
-        product(i, j) + product(j, i) + d[place] * (2.0 / 3.0 * chi) - q[place] * stretch - trace
-    };
-    [rate(0, 0), rate(0, 1), rate(0, 2), rate(1, 1), rate(1, 2)]
+        rate[c] = product[i][j] + product[j][i] + d[place] * (2.0 / 3.0 * chi) - q[place] * stretch;
+        if i == j {
+            rate[c] -= trace;
+        }
+    }
+    rate
 }
 
 /// What multiplies W_ij in the contraction of H with [`turn_and_align`].
@@ -69,17 +72,24 @@ pub(super) fn turn_and_align<S: Simd>(
 #[inline(always)]
 pub(super) fn stress<S: Simd>(q: [f64x8<S>; 5], h: [f64x8<S>; 5], chi: f64) -> [[f64x8<S>; 3]; 3] {
     let (q, h) = (six(q), six(h));
-    let product = |i: usize, j: usize| {
-        q[PLACE[i][0]] * h[PLACE[0][j]]
-            + q[PLACE[i][1]] * h[PLACE[1][j]]
-            + q[PLACE[i][2]] * h[PLACE[2][j]]
-    };
     let stretch = contract(q, h) * (2.0 * chi);
-    let entry = |i: usize, j: usize| {
-        let place = PLACE[i][j];
-        product(i, j) * (chi + 1.0) + product(j, i) * (chi - 1.0) + h[place] * (2.0 / 3.0 * chi)
-            - q[place] * stretch
-    };
-    let row = |i: usize| [entry(i, 0), entry(i, 1), entry(i, 2)];
-    [row(0), row(1), row(2)]
+    let mut product = [[stretch; 3]; 3];
+    for i in 0..3 {
+        for j in 0..3 {
+            product[i][j] = q[PLACE[i][0]] * h[PLACE[0][j]]
+                + q[PLACE[i][1]] * h[PLACE[1][j]]
+                + q[PLACE[i][2]] * h[PLACE[2][j]];
+        }
+    }
+    let mut stress = product;
+    for i in 0..3 {
+        for j in 0..3 {
+            let place = PLACE[i][j];
+            stress[i][j] = product[i][j] * (chi + 1.0)
+                + product[j][i] * (chi - 1.0)
+                + h[place] * (2.0 / 3.0 * chi)
+                - q[place] * stretch;
+        }
+    }
+    stress
 }
