@@ -7,7 +7,7 @@ mod rate;
 mod stencil;
 mod terms;
 
-pub use coupling::{FlowCounters, FlowCoupling, FlowParameters};
+pub use coupling::{FlowCounters, FlowCoupling, FlowParameters, FlowSolver};
 pub use stencil::Stored;
 
 #[cfg(test)]

@@ -51,7 +51,8 @@ pub use real::Precision;
 pub use ring::{Ring, ring, ring_line};
 pub use state::NematicState;
 pub use stokes::{
-    Drive, FaceSites, MacField, NoSlip, NoSlipReport, Spectral, StokesError, StokesSolver,
+    Drive, FaceSites, MacField, NoSlip, NoSlipReport, Sparse, SparseOptions, Spectral, StokesError,
+    StokesSolver,
 };
 pub use surface::{TriangleMesh, VolumeSlice, isosurface, volume_slice};
 pub use tensor::{

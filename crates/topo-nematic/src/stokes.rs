@@ -7,6 +7,7 @@ mod no_slip;
 mod reduce;
 mod sites;
 mod solver;
+mod sparse;
 mod spectral;
 
 pub use drive::Drive;
@@ -15,4 +16,5 @@ pub use field::MacField;
 pub use no_slip::{NoSlip, NoSlipReport};
 pub use sites::FaceSites;
 pub use solver::StokesSolver;
+pub use sparse::{Sparse, SparseOptions};
 pub use spectral::Spectral;

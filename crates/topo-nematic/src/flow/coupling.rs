@@ -8,10 +8,25 @@ use super::force::{Director, Window};
 use super::observables;
 use super::rate::Flow;
 use super::stencil::{Stencil, Stored};
-use crate::grid::Grid;
+use crate::grid::{Faces, Grid};
 use crate::material::Material;
 use crate::particle::Particle;
-use crate::stokes::{Drive, MacField, NoSlip, Spectral, StokesError, StokesSolver};
+use crate::stokes::{
+    Drive, MacField, NoSlip, Sparse, SparseOptions, Spectral, StokesError, StokesSolver,
+};
+
+/// Which solver finds the flow.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum FlowSolver {
+    /// Spectral where x and y are periodic, else sparse.
+    #[default]
+    Auto,
+    /// Fourier modes along x and y: [`Spectral`].
+    Spectral,
+    /// Any sides: [`Sparse`].
+    Sparse,
+}
 
 /// How the flow is computed.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -23,6 +38,10 @@ pub struct FlowParameters {
     pub boundary_residual: f64,
     /// What drives the fluid besides the director.
     pub drive: Drive,
+    /// Which solver finds the flow.
+    pub solver: FlowSolver,
+    /// Relative residual of the sparse solver.
+    pub solver_tolerance: f64,
     /// Most memory the flow may take, in bytes.
     pub memory_limit: u64,
 }
@@ -33,7 +52,27 @@ impl Default for FlowParameters {
             every: 1,
             boundary_residual: 0.01,
             drive: Drive::default(),
+            solver: FlowSolver::Auto,
+            solver_tolerance: 1e-8,
             memory_limit: 16 << 30,
+        }
+    }
+}
+
+impl FlowParameters {
+    fn is_spectral(&self, grid: &Grid) -> bool {
+        match self.solver {
+            FlowSolver::Auto => grid.faces()[..2] == [Faces::Periodic; 2],
+            FlowSolver::Spectral => true,
+            FlowSolver::Sparse => false,
+        }
+    }
+
+    fn sparse(&self) -> SparseOptions {
+        SparseOptions {
+            tolerance: self.solver_tolerance,
+            memory_limit: self.memory_limit,
+            ..SparseOptions::default()
         }
     }
 }
@@ -107,14 +146,18 @@ impl FlowCoupling {
         let viscosity = positive("viscosity", material.viscosity)?;
         positive("flow.every", parameters.every as f64)?;
         parameters.drive.check(grid)?;
-        let estimate = Self::n_bytes_estimate(grid, particle.is_some());
+        let estimate = Self::n_bytes_estimate(grid, particle.is_some(), parameters);
         if estimate > parameters.memory_limit {
             return Err(StokesError::Memory {
                 estimate,
                 limit: parameters.memory_limit,
             });
         }
-        let solver = Box::new(Spectral::new(grid, viscosity)?);
+        let solver: Box<dyn StokesSolver> = if parameters.is_spectral(grid) {
+            Box::new(Spectral::new(grid, viscosity)?)
+        } else {
+            Box::new(Sparse::new(grid, viscosity, &parameters.sparse())?)
+        };
         let no_slip = particle
             .map(|p| NoSlip::sphere(grid, p.centre(), p.radius(), parameters.boundary_residual))
             .transpose()?;
@@ -145,13 +188,18 @@ impl FlowCoupling {
         })
     }
 
-    /// Bytes the flow will take on `grid`, within a few percent.
-    pub fn n_bytes_estimate(grid: &Grid, with_particle: bool) -> u64 {
+    /// Bytes the flow will take on `grid`, within a tenth with the spectral solver and a third with the sparse one.
+    pub fn n_bytes_estimate(grid: &Grid, with_particle: bool, parameters: &FlowParameters) -> u64 {
         let cells = grid.n_cells() as u64;
         let fields = 6 + u64::from(with_particle);
         let plane = (grid.cells()[0] * grid.cells()[1]) as u64;
         let threads = rayon::current_num_threads() as u64;
-        8 * (fields * cells + 33 * plane * threads) + Spectral::n_bytes_estimate(grid.cells())
+        let solver = if parameters.is_spectral(grid) {
+            Spectral::n_bytes_estimate(grid.cells())
+        } else {
+            Sparse::n_bytes_estimate(grid, &parameters.sparse())
+        };
+        8 * (fields * cells + 33 * plane * threads) + solver
     }
 
     /// Computes the velocity that `q` and the molecular field `h` drive; both component-major, 5 x n_cells.
