@@ -39,7 +39,7 @@ pub use boundary::{Boundary, FreeSurface};
 pub use defects::{CrossSection, DefectLine, defect_lines, director_field, order_field};
 pub use energy::EnergyParts;
 pub use error::NematicError;
-pub use flow::{FlowCounters, FlowCoupling, FlowParameters, Stored};
+pub use flow::{FlowCounters, FlowCoupling, FlowParameters, FlowSolver, Stored};
 pub use grid::{Faces, Grid, GridError};
 pub use kernel::run::Threads;
 pub use material::Material;

@@ -250,7 +250,11 @@ fn power_is_what_the_director_loses_around_a_particle() {
     );
     assert!(
         flow.n_bytes() as u64
-            <= FlowCoupling::n_bytes_estimate(&Grid::new([16, 16, 20], 1.0, [Faces::Periodic; 3]).unwrap(), true, &parameters) * 3
+            <= FlowCoupling::n_bytes_estimate(
+                &Grid::new([16, 16, 20], 1.0, [Faces::Periodic; 3]).unwrap(),
+                true,
+                &parameters
+            ) * 3
                 / 2
     );
 }
@@ -333,7 +337,13 @@ fn broken_input_is_refused() {
 #[test]
 fn walled_sides_take_the_sparse_solver() {
     let grid = Grid::new([8, 8, 10], 1.0, [Faces::Wall; 3]).unwrap();
-    let mut flow = FlowCoupling::new(&grid, None, &Material::default(), &FlowParameters::default()).unwrap();
+    let mut flow = FlowCoupling::new(
+        &grid,
+        None,
+        &Material::default(),
+        &FlowParameters::default(),
+    )
+    .unwrap();
     assert_eq!(flow.solver(), "sparse");
     let n = 5 * grid.n_cells();
     let (q, h) = (noise(n, 1), noise(n, 2));
@@ -341,7 +351,11 @@ fn walled_sides_take_the_sparse_solver() {
     let mut rate = vec![0.0; n];
     flow.add_rate(&q, &mut rate);
     let loss = contraction(&h, &rate, None);
-    assert!((flow.power() / loss - 1.0).abs() < 1e-6, "{} {loss}", flow.power());
+    assert!(
+        (flow.power() / loss - 1.0).abs() < 1e-6,
+        "{} {loss}",
+        flow.power()
+    );
     assert!((flow.dissipation() / flow.power() - 1.0).abs() < 1e-12);
     assert!(flow.counters().n_iterations > 10);
 }

@@ -111,7 +111,11 @@ impl Sparse {
             .map(|l| 3 * 3 * n_cells(l) * size_of::<f64>())
             .sum();
         let coarsest = levels.last().map_or(0, n_cells) as f64;
-        let n_periodic = grid.faces().iter().filter(|f| **f == Faces::Periodic).count();
+        let n_periodic = grid
+            .faces()
+            .iter()
+            .filter(|f| **f == Faces::Periodic)
+            .count();
         let factors = 3.0 * FACTOR_BYTES[n_periodic] * coarsest.powf(4.0 / 3.0);
         (vectors + cycles) as u64 + factors as u64
     }
