@@ -56,7 +56,7 @@ fn val_drag_on_a_cubic_array_of_spheres() {
 }
 
 #[test]
-#[ignore = "long: 20 s; a dilute array, and all arrays at radii about 12"]
+#[ignore = "long: 10 s; a dilute array, and all arrays at radii about 12"]
 fn long_drag_on_a_cubic_array_of_spheres() {
     let cases = [
         (0.001, 1.212, 100),
