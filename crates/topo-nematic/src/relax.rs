@@ -13,7 +13,7 @@ const MIXING_START: f64 = 0.1;
 const MIXING_SHRINK: f64 = 0.99;
 
 /// The clock of a relaxation.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Clock {
     pub dt: f64,
     mixing: f64,

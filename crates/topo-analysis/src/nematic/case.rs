@@ -68,7 +68,9 @@ impl CaseRun<'_> {
         };
         let battery = NematicBattery::new(&self.case.nematic, &accuracy).map_err(refuse)?;
         let mut tell = |p: &Progress| (self.told)(p);
-        let checkpoint = |phase: &str| self.folder.join(format!("{phase}.checkpoint"));
+        let mark = fingerprint(self.scene, self.case);
+        forget_others(self.folder, &mark)?;
+        let checkpoint = |phase: &str| self.folder.join(format!("{phase}-{mark}.checkpoint"));
         let mut hooks = RunHooks::new(self.interrupt)
             .with_progress(&mut tell)
             .with_checkpoint(&checkpoint("charge"), CHECKPOINT_SECONDS);
@@ -83,14 +85,14 @@ impl CaseRun<'_> {
             flow: self.case.flow,
             ..self.scene.discharge.clone()
         };
-        let (mark, place) = (fingerprint(self.scene, self.case), checkpoint("snapshots"));
-        let mut kept = self.kept(&mark, &place);
+        let place = checkpoint("snapshots");
+        let mut kept: Kept = load_checkpoint(&place, KEPT).unwrap_or_default();
         let mut failed: Option<AnalysisError> = None;
         let mut see =
             |s: &topo_nematic::NematicSample, state: &NematicState, flow: Option<&FlowCoupling>| {
                 let share = s.energy.total() / released.start();
                 if failed.is_none() && kept.see(s.time, share, state, flow) {
-                    failed = save_checkpoint(&place, KEPT, &(&mark, &kept))
+                    failed = save_checkpoint(&place, KEPT, &kept)
                         .err()
                         .map(AnalysisError::from);
                 }
@@ -108,18 +110,8 @@ impl CaseRun<'_> {
         }
         let row = self.row(&battery, &charged, &run);
         self.write(&charged, &run, &kept, &row)?;
-        // what is finished needs no checkpoint; one that stays behind does no harm
-        let _ = std::fs::remove_file(place);
+        forget_others(self.folder, "")?;
         Ok(Some(row))
-    }
-
-    /// Snapshots of an earlier run that was stopped, if they are of this case.
-    fn kept(&self, mark: &str, place: &Path) -> Kept {
-        let found: Result<(String, Kept), _> = load_checkpoint(place, KEPT);
-        match found {
-            Ok((found, kept)) if found == mark => kept,
-            _ => Kept::default(),
-        }
     }
 
     fn row(
@@ -242,6 +234,26 @@ impl CaseRun<'_> {
             text.as_bytes(),
         )?)
     }
+}
+
+/// Removes checkpoints of other settings, or all when `mark` is empty.
+pub(super) fn forget_others(folder: &Path, mark: &str) -> Result<(), AnalysisError> {
+    let wrong = |source| AnalysisError::Output {
+        path: folder.to_owned(),
+        source,
+    };
+    let Ok(entries) = std::fs::read_dir(folder) else {
+        return Ok(());
+    };
+    for entry in entries {
+        let entry = entry.map_err(wrong)?;
+        let name = entry.file_name().to_string_lossy().into_owned();
+        let ours = !mark.is_empty() && name.ends_with(&format!("-{mark}.checkpoint"));
+        if name.ends_with(".checkpoint") && !ours {
+            std::fs::remove_file(entry.path()).map_err(wrong)?;
+        }
+    }
+    Ok(())
 }
 
 fn sample(s: &topo_nematic::NematicSample) -> NematicSample {

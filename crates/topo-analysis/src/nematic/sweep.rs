@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use rayon::prelude::*;
 use topo_nematic::{NematicBattery, Progress, Threads};
 
-use super::case::{self, CaseRun, fingerprint};
+use super::case::{self, CaseRun, fingerprint, forget_others};
 use super::scene::{NematicCase, NematicScene};
 use super::table::NematicRow;
 use crate::AnalysisError;
@@ -53,14 +53,11 @@ pub fn run_nematic_sweep(
             let place = folder.join(name(case));
             let kept = (!settings.fresh).then(|| finished(&place, &fingerprint(scene, case)));
             if settings.fresh {
-                for checkpoint in ["charge", "discharge", "snapshots"] {
-                    // one that is not there need not go
-                    let _ = std::fs::remove_file(place.join(format!("{checkpoint}.checkpoint")));
-                }
+                forget_others(&place, "")?;
             }
-            kept.flatten().and_then(|rows| rows.into_iter().next())
+            Ok(kept.flatten().and_then(|rows| rows.into_iter().next()))
         })
-        .collect();
+        .collect::<Result<_, AnalysisError>>()?;
     let n_reused = found.iter().filter(|f| f.is_some()).count();
     let mut largest = 0;
     for (case, _) in cases.iter().zip(&found).filter(|(_, f)| f.is_none()) {
@@ -134,4 +131,106 @@ pub fn run_nematic_sweep(
         n_computed,
         n_reused,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use topo_core::Interrupt;
+
+    use super::*;
+
+    const SCENE: &str = "[nematic]\nradius = 5\nspacing = 1.0\nq = [1, 3]\n[charge]\ntolerance = 1e-5\n[discharge]\nuntil_released = 0.9\n[accuracy]\ntolerance = 1e-3\n";
+
+    fn settings(out: &Path, jobs: usize) -> SweepSettings {
+        SweepSettings {
+            out: out.to_owned(),
+            jobs,
+            fresh: false,
+            interrupt: Interrupt::new(),
+        }
+    }
+
+    fn timeless(report: &NematicReport) -> Vec<NematicRow> {
+        let drop = |r: &NematicRow| NematicRow {
+            cpu_seconds: 0.0,
+            peak_bytes: 0,
+            ..r.clone()
+        };
+        report.rows.iter().map(drop).collect()
+    }
+
+    #[test]
+    fn finished_cases_are_kept_stopped_ones_go_on_and_jobs_change_nothing() {
+        let scene = NematicScene::parse(SCENE, Path::new("scene.toml")).unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let run =
+            |jobs| run_nematic_sweep(&scene, &settings(folder.path(), jobs), &|_| {}).unwrap();
+        let first = run(2);
+        assert_eq!(
+            (first.n_computed, first.n_reused, first.rows.len()),
+            (2, 0, 2)
+        );
+        assert!(
+            first
+                .rows
+                .iter()
+                .all(|r| r.t50.is_some() && r.stokes_updates == 0)
+        );
+        assert!(first.rows[1].f_charged > first.rows[0].f_charged);
+        let case = folder
+            .path()
+            .join("nematic")
+            .join(first.rows[0].case_name());
+        let read = |file: &str| std::fs::read(case.join(file)).unwrap();
+        let slices = read("slices.csv");
+        let again = run(2);
+        assert_eq!((again.n_computed, again.n_reused), (0, 2));
+        assert_eq!(again.rows, first.rows);
+        // stopped at the first word of the discharge, then gone on
+        std::fs::remove_file(case.join("run.json")).unwrap();
+        let stop = Interrupt::new();
+        let stopping = SweepSettings {
+            interrupt: stop.clone(),
+            ..settings(folder.path(), 1)
+        };
+        let report = run_nematic_sweep(&scene, &stopping, &|event| {
+            if let Event::Working { what, .. } = event
+                && what.starts_with("discharging: step 4")
+            {
+                stop.request();
+            }
+        })
+        .unwrap();
+        assert!(report.interrupted && report.rows.len() == 1);
+        let checkpoints = || {
+            let entries = std::fs::read_dir(&case).unwrap();
+            let names = entries.map(|e| e.unwrap().file_name().into_string().unwrap());
+            names.filter(|n| n.ends_with(".checkpoint")).count()
+        };
+        assert!(checkpoints() > 0);
+        let resumed = run(1);
+        assert_eq!((resumed.n_computed, resumed.n_reused), (1, 1));
+        assert_eq!(timeless(&resumed), timeless(&first));
+        assert_eq!(read("slices.csv"), slices);
+        assert_eq!(checkpoints(), 0);
+    }
+
+    #[test]
+    fn impossible_colloids_are_refused_before_anything_runs() {
+        let folder = tempfile::tempdir().unwrap();
+        for (change, word) in [
+            ("radius = 5\ncell = [1.5, 1.5, 1.5]", "radius"),
+            ("radius = -5", "radius"),
+            ("radius = 5\nspacing = 40", "spacing"),
+        ] {
+            let text = format!("[nematic]\n{change}\nq = 1\n");
+            let scene = NematicScene::parse(&text, Path::new("scene.toml")).unwrap();
+            let error = run_nematic_sweep(&scene, &settings(folder.path(), 1), &|_| {})
+                .unwrap_err()
+                .to_string();
+            assert!(error.contains(word), "{change:?}: {error}");
+        }
+    }
 }

@@ -69,9 +69,9 @@ pub struct ChargedNematic {
 
 /// Steps between looks at the order parameter.
 const CHECK_EVERY: u64 = 25;
-const SCHEMA: &str = "nematic-charge/1";
+const SCHEMA: &str = "nematic-charge/2";
 
-/// A charge that is not finished.
+/// A charge on its way; one that is done has gone through all seeds.
 #[derive(Serialize, Deserialize)]
 struct Unfinished {
     seed: usize,
@@ -81,6 +81,9 @@ struct Unfinished {
     clock: Clock,
     n_steps: u64,
     last_order: Option<f64>,
+    is_converged: bool,
+    n_bytes: u64,
+    cpu_seconds: f64,
 }
 
 impl NematicBattery {
@@ -164,11 +167,15 @@ impl NematicBattery {
         let order_scale = self.parameters.material.order();
         let case = format!("{:?} {settings:?}", self.parameters);
         let mut unfinished: Option<Unfinished> = hooks.resume(SCHEMA, &case)?;
-        let (first, mut best, mut n_steps) = match &mut unfinished {
-            Some(u) => (u.seed, u.best.take(), u.n_steps),
-            None => (0, None, 0),
-        };
+        let (mut first, mut best, mut n_steps, mut earlier) = (0, None, 0, 0.0);
         let (mut stop, mut n_bytes) = ("converged", 0);
+        if let Some(u) = &mut unfinished {
+            (first, best, n_steps, earlier) = (u.seed, u.best.take(), u.n_steps, u.cpu_seconds);
+            n_bytes = u.n_bytes;
+            if !u.is_converged {
+                stop = "step-limit";
+            }
+        }
         for (index, seed) in settings.seeds.iter().enumerate().skip(first) {
             let mut relaxation = Relaxation::new(&kernel);
             let mut last_order = None;
@@ -220,6 +227,9 @@ impl NematicBattery {
                             clock: relaxation.clock,
                             n_steps,
                             last_order,
+                            is_converged: stop == "converged",
+                            n_bytes,
+                            cpu_seconds: earlier + clock.seconds(),
                         };
                         hooks.save(SCHEMA, &case, &record)?;
                     }
@@ -243,11 +253,24 @@ impl NematicBattery {
                 break;
             }
         }
-        let Some((_, state, seed, rms_field)) = best else {
+        let Some((energy, state, seed, rms_field)) = best else {
             return Err(NematicError::Diverged { step: 0 });
         };
-        if stop != "interrupted" {
-            hooks.finish();
+        if stop != "interrupted" && first < settings.seeds.len() {
+            // what comes after may be stopped: then the charge is there at once
+            let record = Unfinished {
+                seed: settings.seeds.len(),
+                best: Some((energy, state.clone(), seed, rms_field)),
+                q: Vec::new(),
+                velocity: Vec::new(),
+                clock: Clock::default(),
+                n_steps,
+                last_order: None,
+                is_converged: stop == "converged",
+                n_bytes,
+                cpu_seconds: earlier + clock.seconds(),
+            };
+            hooks.save(SCHEMA, &case, &record)?;
         }
         let report = ChargeReport {
             stop,
@@ -256,7 +279,7 @@ impl NematicBattery {
             rms_field,
             energy: kernel.energy_of(&state),
             order: order_parameter(&state, order_scale),
-            cpu_seconds: clock.seconds(),
+            cpu_seconds: earlier + clock.seconds(),
             bytes: ByteAccount {
                 fields: n_bytes,
                 geometry: kernel.n_bytes(),

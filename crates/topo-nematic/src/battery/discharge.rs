@@ -74,7 +74,7 @@ impl Discharge {
     }
 }
 
-const SCHEMA: &str = "nematic-discharge/1";
+const SCHEMA: &str = "nematic-discharge/2";
 /// First step, in h²/(Gamma L).
 const FIRST_STEP: f64 = 1e-3;
 
@@ -117,6 +117,7 @@ struct Progressing {
     counters: topo_core::Counters,
     curve: DischargeCurve,
     samples: Vec<NematicSample>,
+    cpu_seconds: f64,
 }
 
 impl SwitchedNematic {
@@ -197,6 +198,7 @@ impl SwitchedNematic {
                     counters: topo_core::Counters::default(),
                     curve: DischargeCurve::new(EnergyParts::NAMES, CHANNELS),
                     samples: Vec::new(),
+                    cpu_seconds: 0.0,
                 }
             }
         };
@@ -210,7 +212,7 @@ impl SwitchedNematic {
             kernel.spread(state.q_tensor(), &mut q);
             Stabilised::new(&kernel, q)
         };
-        field.counters = run.counters;
+        let earlier = run.cpu_seconds;
         let mut energy = kernel.energy(&field.q);
         if run.n_steps == 0 {
             let removed = run.ledger.stored_total() - energy.total();
@@ -235,6 +237,10 @@ impl SwitchedNematic {
             flow.update(&kernel, &mut field)?;
         }
         field.update_rate(&kernel, extra(&flow));
+        if run.n_steps > 0 {
+            // The rate at a checkpoint was counted before it was written.
+            field.counters = run.counters;
+        }
         let stop = loop {
             if run.curve.time().last().is_none_or(|last| run.time > *last) {
                 let dissipated = [0, 1].map(|c| run.ledger.dissipated(c));
@@ -270,6 +276,7 @@ impl SwitchedNematic {
                 kernel.gather(&field.q, state.q_mut());
                 run.dt = control.dt();
                 run.counters = field.counters;
+                run.cpu_seconds = earlier + clock.seconds();
                 hooks.save(SCHEMA, &case, &(&run, state.q_tensor()))?;
             }
             if hooks.is_interrupted() {
@@ -393,7 +400,7 @@ impl SwitchedNematic {
                 geometry: kernel.n_bytes(),
                 flow: flow.as_ref().map_or(0, |f| f.coupling.n_bytes() as u64),
             },
-            cpu_seconds: clock.seconds(),
+            cpu_seconds: earlier + clock.seconds(),
             flow: flow.as_ref().map(CoupledFlow::report),
         };
         Ok(Discharge {

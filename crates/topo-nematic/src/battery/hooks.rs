@@ -73,7 +73,7 @@ impl<'a> RunHooks<'a> {
     }
 
     /// With a checkpoint file, written every `interval` seconds at most (30 by default); a run that finds its own checkpoint goes on
-    /// from there, and removes it when it is finished.
+    /// from there. A finished charge leaves one, so that the next call has its result at once; a finished discharge removes its own.
     pub fn with_checkpoint(mut self, path: &Path, interval: f64) -> Self {
         self.checkpoint = Some(path.to_owned());
         self.interval = Duration::try_from_secs_f64(interval).unwrap_or(self.interval);
