@@ -79,13 +79,15 @@ fn disturbed(curve: &Polyline, rng: &mut Pcg64) -> Vec<V> {
     x
 }
 
-/// Turned, perturbed and resampled tight curves of the whole table are all named right, with their handedness and for certain.
-#[test]
-fn val_a_thousand_disturbed_tight_curves_are_named() {
+/// Names turned, perturbed and resampled tight curves of the knots to a crossing number, and of their mirror images.
+fn check_disturbed(crossing_number: u32, n_each: usize) -> usize {
     let table = KnotTable::builtin();
     let mut rng = Pcg64::seed_from_u64(7);
     let (mut n_named, mut n_certain) = (0, 0);
-    for knot in table.iter() {
+    for knot in table
+        .iter()
+        .filter(|k| k.crossing_number <= crossing_number)
+    {
         let tight = tight(&knot.name, &quick());
         let mirror = tight
             .curve
@@ -93,7 +95,7 @@ fn val_a_thousand_disturbed_tight_curves_are_named() {
             .iter()
             .map(|x| V::new(x.x, x.y, -x.z));
         let mirror = Polyline::new(mirror.collect(), true).unwrap();
-        for k in 0..26 {
+        for k in 0..n_each {
             let (curve, chiral) = match k % 2 {
                 0 => (&tight.curve, Handedness::Tabulated),
                 _ => (&mirror, Handedness::Mirrored),
@@ -110,8 +112,24 @@ fn val_a_thousand_disturbed_tight_curves_are_named() {
         }
     }
     println!("{n_named} curves named, {n_certain} of them for certain");
-    assert!(n_named >= 1000);
-    assert!(n_certain as f64 > 0.8 * n_named as f64);
+    assert!(
+        n_certain as f64 > 0.8 * n_named as f64,
+        "{n_certain} of {n_named}"
+    );
+    n_named
+}
+
+/// Disturbed tight curves are all named right, with their handedness.
+#[test]
+fn val_disturbed_tight_curves_are_named() {
+    assert!(check_disturbed(5, 50) == 200);
+}
+
+/// The same for the whole table.
+#[test]
+#[ignore = "long: 1 minute"]
+fn long_a_thousand_disturbed_tight_curves_are_named() {
+    assert!(check_disturbed(10, 26) > 1000);
 }
 
 /// A tight knot cut open is still named after its closed curve by nearly all closures, wherever the cut.

@@ -31,6 +31,8 @@ const MOEBIUS_STEPS: usize = 120;
 /// Cancelling pairs of generators put into a word to vary its embedding.
 const N_PADS: usize = 2;
 
+/// Random words that keep the number of strands; further ones get more.
+const N_PADDED: usize = 2;
 /// Generators up to which a word gets a further strand; more make long starts.
 const MOST_STRANDS: i32 = 4;
 /// Vertices per unit of ropelength above which a level starts from a curve that is nearly tight.
@@ -122,10 +124,11 @@ pub fn tighten_entry(
         starts.push(closed_braid(word)?);
     }
     let mut rng = Pcg64::seed_from_u64(settings.seed);
-    // Words of the table were chosen for the basins that they lead to, random ones make up for their lack.
-    for k in 0..settings.n_variants.saturating_sub(entry.other_braids.len()) {
+    // Words of the table were chosen for the basins that they lead to: one random word less is needed.
+    let n_chosen = entry.other_braids.len().min(1);
+    for k in 0..settings.n_variants.saturating_sub(n_chosen) {
         if !entry.braid.is_empty() {
-            let word = if k == 0 {
+            let word = if k < N_PADDED {
                 padded(&entry.braid, &mut rng)
             } else {
                 stabilised(&entry.braid, &mut rng)

@@ -61,7 +61,7 @@ pub struct TightenArgs {
     /// How fine.
     #[arg(long, value_enum, default_value_t = KnotQuality::Standard)]
     pub quality: KnotQuality,
-    /// Check each length by the second method (always done where it is below the published one).
+    /// Tighten each once more by the second method, from a loosened start: about a minute a knot at standard quality.
     #[arg(long)]
     pub check: bool,
     /// Folder of the curves, their certificates and the table.

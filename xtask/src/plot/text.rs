@@ -61,7 +61,7 @@ pub fn spans(label: &str, size: f64) -> String {
 /// Knot name for reading: `7_4` becomes 7₄.
 pub fn knot_name(name: &str) -> String {
     let digits = ['₀', '₁', '₂', '₃', '₄', '₅', '₆', '₇', '₈', '₉'];
-    match name.split_once('_') {
+    let factor = |name: &str| match name.split_once('_') {
         Some((crossings, index)) => {
             let low = index
                 .chars()
@@ -69,7 +69,9 @@ pub fn knot_name(name: &str) -> String {
             crossings.chars().chain(low).collect()
         }
         None => name.to_owned(),
-    }
+    };
+    let factors: Vec<String> = name.split('#').map(factor).collect();
+    factors.join("#")
 }
 
 /// Number for reading: at most `places` decimals, none that are zero, a true minus sign.
@@ -169,6 +171,7 @@ mod tests {
     fn names_and_numbers_read_well() {
         assert_eq!(knot_name("7_4"), "7₄");
         assert_eq!(knot_name("unknot"), "unknot");
+        assert_eq!(knot_name("3_1#m10_24"), "3₁#m10₂₄");
         assert_eq!(number(-2.0, 2), "−2");
         assert_eq!(number(-0.001, 2), "0");
         assert_eq!(signed(1.75), "+1.75");

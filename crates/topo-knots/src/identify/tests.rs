@@ -333,3 +333,63 @@ fn a_million_vertices_are_named() {
     }
     assert!(per_vertex[1] < 1.5 * per_vertex[0], "{per_vertex:?}");
 }
+
+/// Words of sixty letters: the invariants of the closure, or a refusal that counts its crossings; never a name of the table.
+#[test]
+fn words_of_sixty_letters_get_no_wrong_name() {
+    let table = KnotTable::builtin();
+    let mut n_knots = 0;
+    for seed in 1..40_u64 {
+        let mut state = seed;
+        let mut letter = || {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
+            // Alternating, so that nothing cancels; words on three strands, as an even number of letters closes no four to a knot.
+            if state >> 63 == 1 { -2 } else { 1 }
+        };
+        let word: Vec<i32> = (0..60).map(|_| letter()).collect();
+        let Ok(curve) = closed_braid(&word) else {
+            continue;
+        };
+        n_knots += 1;
+        match identify(curve.vertices(), &table) {
+            Ok(kind) => {
+                assert!(kind.names.is_empty() && !kind.is_certain(), "{kind:?}");
+                assert!(kind.invariants.determinant > 100);
+            }
+            Err(error) => assert!(matches!(error, KnotError::TooComplicated { .. }), "{error}"),
+        }
+    }
+    assert!(n_knots > 3, "{n_knots}");
+}
+
+#[test]
+fn curves_that_touch_themselves_are_refused() {
+    let table = KnotTable::builtin();
+    let lobe = |k: usize| std::f64::consts::TAU * (k as f64 + 0.25) / 400.0;
+    // Three lobes in a plane: every crossing is a touch.
+    let flat: Vec<V> = (0..400)
+        .map(|k| {
+            let (t, r) = (lobe(k), 2.0 + (3.0 * lobe(k)).cos());
+            V::new(r * (2.0 * t).cos(), r * (2.0 * t).sin(), 0.0)
+        })
+        .collect();
+    assert!(matches!(
+        identify(&flat, &table),
+        Err(KnotError::Degenerate)
+    ));
+    assert!(matches!(Invariants::of(&flat), Err(KnotError::Degenerate)));
+}
+
+#[test]
+fn repeated_and_collinear_vertices_do_no_harm() {
+    let table = KnotTable::builtin();
+    let curve = braid(&[1, 1, 1]);
+    let mut x = Vec::new();
+    for (k, a) in curve.iter().enumerate() {
+        let b = curve[(k + 1) % curve.len()];
+        x.extend([*a, *a, 0.5 * (a + b), 0.25 * a + 0.75 * b]);
+    }
+    assert_eq!(identify(&x, &table).expect("a knot").label(), "3_1");
+}

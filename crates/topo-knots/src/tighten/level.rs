@@ -41,7 +41,7 @@ pub(crate) const LOOSE_REACH: [f64; 2] = [LONGEST_STEP, 0.03];
 pub(crate) const NEAR_REACH: [f64; 2] = [0.1, 0.01];
 
 /// What tightening at one resolution came to.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(crate) struct Outcome {
     /// Last curve.
     pub last: Polyline,

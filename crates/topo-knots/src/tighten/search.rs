@@ -14,11 +14,13 @@ use crate::thickness;
 const KICK: f64 = 0.7;
 /// Vertices per unit of ropelength that a loose start needs to bend freely.
 const LOOSE_PER_UNIT: f64 = 0.8;
+/// Relative difference of ropelength that the resolution of the search does not decide.
+const NEAR_TIE: f64 = 1e-2;
 /// Curves that share the kicks at first.
 const N_FINALISTS: usize = 2;
 
-/// Tightens all starts coarsely and hops between basins from the best; returns the shortest of type `kind` first, and the number
-/// of factorisations.
+/// Tightens all starts coarsely and hops between basins from the best; returns the shortest of type `kind` first, then others
+/// nearly as short, and the number of factorisations.
 pub(crate) fn search(
     name: &str,
     starts: &[Polyline],
@@ -40,6 +42,7 @@ pub(crate) fn search(
             Err(error) => last = error.to_string(),
         }
     }
+    let rested = pool.clone();
     // Many starts rest at saddle points high above the basin below them, so each is kicked before they are compared.
     for place in 0..pool.len() {
         for _ in 0..settings.n_kicks_a_start {
@@ -65,6 +68,9 @@ pub(crate) fn search(
             last,
         });
     }
+    // At this resolution a kick may lead to a basin that is better here only: what the starts came to stays in the race.
+    let limit = pool[0].ropelength * (1.0 + NEAR_TIE);
+    pool.extend(rested.into_iter().filter(|o| o.ropelength < limit));
     Ok((pool, n_factorisations))
 }
 

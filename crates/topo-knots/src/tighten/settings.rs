@@ -54,7 +54,7 @@ impl TightenSettings {
         Self {
             per_unit: 16.0,
             n_variants: 3,
-            n_kicks: 10,
+            n_kicks: 12,
             tolerance: 2e-5,
             max_steps: 200,
             ..Self::draft()
@@ -73,7 +73,7 @@ impl TightenSettings {
     /// Curves of the search that go on to the first level: at low resolution, basins that differ by less than a tenth of a
     /// percent may change places.
     pub(crate) fn n_finalists(&self) -> usize {
-        if self.per_unit > 8.0 { 2 } else { 1 }
+        if self.per_unit > 8.0 { 4 } else { 1 }
     }
 
     /// Refuses settings out of range.

@@ -8,7 +8,8 @@ use serde_json::json;
 use std::path::Path;
 use topo_core::write_atomic_bytes;
 use topo_knots::{
-    KnotEntry, KnotError, KnotTable, TightKnot, TightenSettings, ideal, read_curve, write_curve,
+    KnotEntry, KnotError, KnotTable, TightKnot, TightenSettings, ideal, read_curve, second_opinion,
+    write_curve,
 };
 
 pub(super) fn run(args: &TightenArgs, table: &KnotTable) -> Result<(), XtaskError> {
@@ -97,10 +98,16 @@ fn write(
     let length = tight.length_over_radius;
     let excess = entry.length_over_radius.map(|l| 100.0 * (length / l - 1.0));
     let certificate = &tight.certificate;
+    let second = args.check.then(|| second_opinion(tight)).transpose()?;
+    let apart = second.as_ref().map(|s| s.length_over_radius / length - 1.0);
     let record = json!({
         "knot": tight.name, "vertices": tight.curve.n_vertices(), "length_over_radius": length,
         "published": entry.length_over_radius, "source": entry.source, "excess_percent": excess,
         "certificate": certificate, "cpu_seconds": tight.cpu_seconds, "factorisations": tight.n_factorisations,
+        "second_method": second.as_ref().map(|s| json!({
+            "length_over_radius": s.length_over_radius, "relative_difference": apart, "converged": s.converged,
+            "start_length_over_radius": s.start_length_over_radius, "evaluations": s.n_evaluations, "cpu_seconds": s.cpu_seconds,
+        })),
     });
     let text = format!("{record:#}\n");
     write_atomic_bytes(&path("json"), text.as_bytes()).map_err(KnotError::from)?;
@@ -121,6 +128,12 @@ fn write(
         certificate.residual,
         tight.cpu_seconds
     );
+    if let (Some(second), Some(apart)) = (&second, apart) {
+        line += &format!(
+            "  second method {:.4} ({apart:+.1e})",
+            second.length_over_radius
+        );
+    }
     if !certificate.converged {
         line += "  NOT CONVERGED: the best curve is kept";
     }
