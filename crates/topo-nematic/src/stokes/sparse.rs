@@ -50,7 +50,7 @@ const FACTOR_BYTES: [f64; 4] = [75.0, 110.0, 160.0, 220.0];
 ///
 /// solved by MINRES for velocity and pressure at once. Its preconditioner inverts A, and the pressure that projects the velocity
 /// onto what is free of divergence by the viscosity alone, which is all that is left of G^T A^-1 G on smooth and rough fields
-/// alike: so the number of iterations (45 with a factor, 65 with multigrid) hardly depends on the grid. A is inverted by a Cholesky factor on small grids,
+/// alike: so the number of iterations (at most 50 with a factor, 80 with multigrid) hardly depends on the grid. A is inverted by a Cholesky factor on small grids,
 /// and by one symmetric multigrid cycle with a Cholesky factor on its coarsest grid beyond. The three components run side by
 /// side, each in one order, so that the result does not depend on the number of threads.
 ///

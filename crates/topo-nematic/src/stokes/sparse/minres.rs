@@ -101,7 +101,7 @@ impl Minres {
             let norm_after = root(inner(&self.image, &self.newer));
             let reduced = cosine * along - cosine_before * sine * norm;
             let diagonal = reduced.hypot(norm_after);
-            if !(diagonal > 0.0) {
+            if diagonal.is_nan() || diagonal <= 0.0 {
                 // The force is balanced by pressure alone, or broken.
                 break;
             }
