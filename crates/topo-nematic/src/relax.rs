@@ -119,7 +119,7 @@ impl<'a, T: Real> Relaxation<'a, T> {
         self.kernel
             .for_each3(&mut self.q, &mut self.velocity, &self.force, |x, v, f| {
                 let next = on_velocity * *v + on_force * f;
-                *x = *x + (back * *v + forth * next);
+                *x += back * *v + forth * next;
                 *v = next;
             });
         rms

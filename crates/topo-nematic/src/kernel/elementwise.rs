@@ -91,7 +91,7 @@ fn linear<S: Simd, T: Real, const N: usize>(
     for i in 0..n {
         let mut sum = on_a * a[i];
         for (f, x) in others {
-            sum = sum + f * x[i];
+            sum += f * x[i];
         }
         a[i] = sum;
     }

@@ -275,8 +275,8 @@ fn single_precision_agrees_to_its_rounding() {
 }
 
 #[test]
-#[ignore = "long: measures"]
-fn speed() {
+#[ignore = "long: times the passes, asserts nothing of them"]
+fn long_speed_of_the_passes() {
     fn time<T: Real>(name: &str, cells: [usize; 3], threads: Threads) {
         let kernel = kernel::<T>(cells, [false, false, true], Ball::None, threads);
         let n = kernel.stride;
