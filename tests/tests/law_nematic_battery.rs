@@ -366,6 +366,31 @@ fn law_a_coarse_start_leads_to_the_same_state() {
 }
 
 #[test]
+#[ignore = "long: a charge of 750 000 cells"]
+fn long_charge_on_the_grid_of_the_comparison() {
+    let parameters = NematicParameters {
+        radius: 26.25,
+        cells: Some([100, 100, 75]),
+        ..Default::default()
+    };
+    let battery = NematicBattery::new(&parameters, &NematicAccuracy::default()).unwrap();
+    let settings = ChargeSettings {
+        tolerance: 1e-7,
+        ..Default::default()
+    };
+    let hooks = &mut RunHooks::new(&Interrupt::new());
+    let charged = battery.charge(&settings, hooks).unwrap();
+    let report = charged.report();
+    println!(
+        "{} steps, {:.2} CPU seconds, F = {:.2}",
+        report.n_steps,
+        report.cpu_seconds,
+        report.energy.total()
+    );
+    assert!(report.is_converged() && report.n_steps < 800, "{report:?}");
+}
+
+#[test]
 fn law_node_mask_reads_lower_than_cut_links() {
     let parameters = NematicParameters {
         boundary: Boundary::NodeMask,
