@@ -68,7 +68,7 @@ fn disturbed(curve: &Polyline, rng: &mut Pcg64) -> Vec<V> {
     let curve = curve.resampled(n).unwrap();
     let mut random = || rng.random_range(-1.0..1.0);
     let axis = Unit::new_normalize(V::new(random(), random(), random()));
-    let turn = Rotation3::from_axis_angle(&axis, 3.14 * random());
+    let turn = Rotation3::from_axis_angle(&axis, std::f64::consts::PI * random());
     let amplitude = 0.2 * (curve.length() / n as f64).min(1.0);
     let mut x: Vec<V> = curve
         .vertices()

@@ -44,7 +44,7 @@ pub struct Clip {
 }
 
 /// An entry of the gallery that moves.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy)]
 pub struct Movie {
     /// File stem, and the value of `--only`.
     pub name: &'static str,

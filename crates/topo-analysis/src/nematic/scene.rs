@@ -95,11 +95,11 @@ impl NematicScene {
             };
             match (&self.flow, &self.flowing) {
                 (None, _) => case(None),
-                (Some(flow), None) => case(Some(flow.clone())),
+                (Some(flow), None) => case(Some(*flow)),
                 (Some(flow), Some(chosen)) => {
                     case(None);
                     if chosen.contains(&q) {
-                        case(Some(flow.clone()));
+                        case(Some(*flow));
                     }
                 }
             }
