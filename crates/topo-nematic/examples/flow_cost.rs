@@ -1,4 +1,5 @@
-//! Time of the flow terms against that of copying their data: `cargo run --release -p topo-nematic --example flow_cost`.
+//! Time of the flow terms against that of copying their data: `cargo run --release -p topo-nematic --example flow_cost`;
+//! `-- full` goes on to the published grid.
 
 use std::error::Error;
 use std::hint::black_box;
@@ -11,7 +12,9 @@ fn main() -> Result<(), Box<dyn Error + Send + Sync>> {
         "n_x,n_y,n_z,particle,copy_ns_a_cell,rate_ns_a_cell,rate_f32_ns_a_cell,update_seconds,boundary_solves,mebibytes"
     );
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
-    for cells in [[64, 64, 48], [200, 200, 150]] {
+    let full = std::env::args().any(|a| a == "full");
+    let grids = [[32, 32, 24], [64, 64, 48], [200, 200, 150]];
+    for cells in grids.into_iter().take(if full { 3 } else { 1 }) {
         for with_particle in [false, true] {
             pool.install(|| report(cells, with_particle))?;
         }

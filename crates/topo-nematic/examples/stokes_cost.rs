@@ -1,4 +1,5 @@
-//! Time and memory of the flow solvers against grid size: `cargo run --release -p topo-nematic --example stokes_cost`.
+//! Time and memory of the flow solvers against grid size: `cargo run --release -p topo-nematic --example stokes_cost`;
+//! `-- full` goes on to the large grids.
 
 use std::error::Error;
 
@@ -12,14 +13,17 @@ fn main() -> Result<(), Box<dyn Error + Send + Sync>> {
         "solver,sides,n_x,n_y,n_z,cpu_seconds_a_solve,cpu_seconds_at_particle,ns_a_cell,mebibytes,iterations"
     );
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
-    for cells in [[32, 32, 32], [64, 64, 64], [100, 100, 75], [200, 200, 150]] {
+    let full = std::env::args().any(|a| a == "full");
+    let spectral = [[32, 32, 32], [64, 64, 64], [100, 100, 75], [200, 200, 150]];
+    for cells in spectral.into_iter().take(if full { 4 } else { 1 }) {
         let sides = [Faces::Periodic, Faces::Periodic, Faces::Wall];
         let grid = Grid::new(cells, 1.0, sides)?;
         let mut solver = pool.install(|| Spectral::new(&grid, 1.38))?;
         pool.install(|| report(&grid, &mut solver))?;
     }
     // A factor of the whole grid up to 24^3 cells, multigrid beyond; periodic along x and y, and walls all around.
-    for (cells, direct_up_to) in [(16, 4096), (24, 16_000), (24, 4096), (32, 4096), (64, 4096)] {
+    let sparse = [(16, 4096), (24, 16_000), (24, 4096), (32, 4096), (64, 4096)];
+    for (cells, direct_up_to) in sparse.into_iter().take(if full { 5 } else { 1 }) {
         for sides in [Faces::Periodic, Faces::Wall] {
             let grid = Grid::new([cells; 3], 1.0, [sides, sides, Faces::Wall])?;
             let options = SparseOptions {
