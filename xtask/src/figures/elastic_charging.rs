@@ -258,7 +258,8 @@ impl<'a> Row<'a> {
         };
         let mut plots = Vec::new();
         let colors = [BLUE, VERMILION];
-        for (state, color) in ends.iter().flatten().zip(colors) {
+        // the first is wider, so that it shows where the second lies on it
+        for ((state, color), width) in ends.iter().flatten().zip(colors).zip([3.4, 1.4]) {
             let curve = &state.1;
             let mut points: Vec<(f64, f64)> = curve
                 .s
@@ -270,7 +271,7 @@ impl<'a> Row<'a> {
             for (x, y) in &points {
                 table.row(&["b-density", self.knot], &[state.0, *x, *y]);
             }
-            plots.push(line(points, color, 1.6));
+            plots.push(line(points, color, width));
         }
         panel.draw(canvas, plots, &[]);
         let name = text::knot_name(self.knot);

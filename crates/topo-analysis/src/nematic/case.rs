@@ -19,7 +19,7 @@ use crate::table::{push_warning, write_table};
 use crate::times::DischargeTimes;
 
 /// Changes whenever the same scene gives other numbers than before; finished cases of another version are computed again.
-const RESULTS_VERSION: u32 = 2;
+const RESULTS_VERSION: u32 = 3;
 
 /// Shares of the energy whose times a row lists.
 pub const NEMATIC_SHARES: [f64; 4] = [0.5, 0.9, 0.99, 0.999];
@@ -28,7 +28,7 @@ pub const NEMATIC_SHARES: [f64; 4] = [0.5, 0.9, 0.99, 0.999];
 const CHECKPOINT_SECONDS: f64 = 25.0;
 
 /// Schema of the checkpoint of snapshots.
-const KEPT: &str = "nematic-snapshots/2";
+const KEPT: &str = "nematic-snapshots/3";
 
 /// Identity of a case: everything that its numbers depend on.
 pub(super) fn fingerprint(scene: &NematicScene, case: &NematicCase) -> String {

@@ -63,6 +63,20 @@ impl Kept {
                 });
             }
         }
+        let whole = {
+            let line = self.lines[first..].iter().filter(|p| p.line == 0);
+            let points: Vec<LinePoint> = line.cloned().collect();
+            (goes_around(&points)).then_some(points)
+        };
+        match whole {
+            Some(points) => self.ring.extend(points),
+            None => self.keep_sectors(time, state, first),
+        }
+        self.keep_slice(time, state, flow, centre);
+    }
+
+    /// The ring by sectors of azimuth, where the defect line has gaps; angles come from the pieces of line nearby.
+    fn keep_sectors(&mut self, time: Option<f64>, state: &NematicState, first: usize) {
         for [x, y, z] in ring_line(state, RING_ORDER).unwrap_or_default() {
             let far = |p: &&LinePoint| (p.x - x).hypot(p.y - y).hypot(p.z - z);
             let nearest = self.lines[first..]
@@ -79,7 +93,6 @@ impl Kept {
                 angle: nearest.and_then(|p| p.angle),
             });
         }
-        self.keep_slice(time, state, flow, centre);
     }
 
     fn keep_slice(
@@ -121,6 +134,22 @@ impl Kept {
     }
 }
 
+/// Whether a line closes after one turn around the vertical axis.
+fn goes_around(points: &[LinePoint]) -> bool {
+    let Some(last) = points.last().filter(|p| p.closed) else {
+        return false;
+    };
+    let mut before = last.y.atan2(last.x);
+    let mut turned = 0.0;
+    for p in points {
+        let angle = p.y.atan2(p.x);
+        let step = (angle - before + std::f64::consts::PI).rem_euclid(std::f64::consts::TAU);
+        turned += step - std::f64::consts::PI;
+        before = angle;
+    }
+    (turned.abs() - std::f64::consts::TAU).abs() < 1e-6
+}
+
 /// Centre of the particle, or of the cell without one.
 fn centre(state: &NematicState) -> [f64; 3] {
     match state.particle() {
@@ -133,6 +162,24 @@ fn centre(state: &NematicState) -> [f64; 3] {
 mod tests {
     use super::*;
     use topo_nematic::{Faces, Grid, uniaxial};
+
+    #[test]
+    fn only_a_closed_line_around_the_axis_is_a_ring() {
+        let line = |x: f64, closed: bool| -> Vec<LinePoint> {
+            let place = |i: i32| f64::from(i) / 40.0 * std::f64::consts::TAU;
+            let point = |i: i32| LinePoint {
+                closed,
+                x: x + place(i).cos(),
+                y: -place(i).sin(),
+                ..LinePoint::default()
+            };
+            (0..40).map(point).collect()
+        };
+        assert!(goes_around(&line(0.3, true)));
+        assert!(!goes_around(&line(0.3, false)));
+        assert!(!goes_around(&line(1.7, true)));
+        assert!(!goes_around(&[]));
+    }
 
     #[test]
     fn each_share_is_kept_once_and_slices_are_thinned() {
