@@ -239,31 +239,59 @@ fn sweep(
     table: &KnotTable,
     settings: &SweepSettings,
 ) -> Result<SweepReport, XtaskError> {
-    let progress: OnceLock<Progress> = OnceLock::new();
-    let report = run_sweep(scene, table, settings, &|event| match event {
-        Event::Begin { n_cases, n_reused } => {
-            if n_reused > 0 {
-                eprintln!("{n_reused} of {n_cases} cases are finished already");
-            }
-            progress.get_or_init(|| Progress::start("elastic", n_cases - n_reused));
+    let teller = Teller::new("elastic");
+    let report = run_sweep(scene, table, settings, &|event| teller.tell(event))?;
+    teller.finish(report.interrupted)?;
+    Ok(report)
+}
+
+/// Tells the events of a sweep on the terminal.
+struct Teller {
+    label: &'static str,
+    progress: OnceLock<Progress>,
+}
+
+impl Teller {
+    fn new(label: &'static str) -> Self {
+        Self {
+            label,
+            progress: OnceLock::new(),
         }
-        Event::Case { name, warnings, .. } => {
-            if let Some(progress) = progress.get() {
+    }
+
+    fn tell(&self, event: Event<'_>) {
+        let progress = self.progress.get();
+        match (event, progress) {
+            (Event::Begin { n_cases, n_reused }, _) => {
+                if n_reused > 0 {
+                    eprintln!("{n_reused} of {n_cases} cases are finished already");
+                }
+                self.progress
+                    .get_or_init(|| Progress::start(self.label, n_cases - n_reused));
+            }
+            (Event::Working { name, what }, Some(progress)) => {
+                progress.working(&format!("{name}: {what}"));
+            }
+            (Event::Case { name, warnings, .. }, Some(progress)) => {
                 progress.done(name);
                 if !warnings.is_empty() {
                     progress.note(&format!("warning: {name}: {warnings}"));
                 }
             }
+            _ => {}
         }
-        _ => {}
-    })?;
-    if let Some(progress) = progress.into_inner() {
-        progress.finish();
     }
-    if report.interrupted {
-        Err(XtaskError::Interrupted)
-    } else {
-        Ok(report)
+
+    /// Ends the telling; a sweep that was interrupted becomes that error.
+    fn finish(self, interrupted: bool) -> Result<(), XtaskError> {
+        if let Some(progress) = self.progress.into_inner() {
+            progress.finish();
+        }
+        if interrupted {
+            Err(XtaskError::Interrupted)
+        } else {
+            Ok(())
+        }
     }
 }
 

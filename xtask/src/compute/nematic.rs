@@ -1,10 +1,9 @@
 //! Nematic sweeps: run with progress, told as a table.
 
+use super::Teller;
 use crate::error::XtaskError;
-use crate::progress::Progress;
-use std::sync::OnceLock;
 use topo_analysis::{
-    Event, NematicReport, NematicScene, SweepSettings, nematic_resonance, run_nematic_sweep,
+    NematicReport, NematicScene, SweepSettings, nematic_resonance, run_nematic_sweep,
 };
 
 /// Runs a user's scene and prints its table.
@@ -66,35 +65,8 @@ pub fn scene(scene: &NematicScene, settings: &SweepSettings) -> Result<(), Xtask
 
 /// Runs a sweep with progress.
 pub fn sweep(scene: &NematicScene, settings: &SweepSettings) -> Result<NematicReport, XtaskError> {
-    let progress: OnceLock<Progress> = OnceLock::new();
-    let report = run_nematic_sweep(scene, settings, &|event| match event {
-        Event::Begin { n_cases, n_reused } => {
-            if n_reused > 0 {
-                eprintln!("{n_reused} of {n_cases} cases are finished already");
-            }
-            progress.get_or_init(|| Progress::start("nematic", n_cases - n_reused));
-        }
-        Event::Working { name, what } => {
-            if let Some(progress) = progress.get() {
-                progress.working(&format!("{name}: {what}"));
-            }
-        }
-        Event::Case { name, warnings, .. } => {
-            if let Some(progress) = progress.get() {
-                progress.done(name);
-                if !warnings.is_empty() {
-                    progress.note(&format!("warning: {name}: {warnings}"));
-                }
-            }
-        }
-        _ => {}
-    })?;
-    if let Some(progress) = progress.into_inner() {
-        progress.finish();
-    }
-    if report.interrupted {
-        Err(XtaskError::Interrupted)
-    } else {
-        Ok(report)
-    }
+    let teller = Teller::new("nematic");
+    let report = run_nematic_sweep(scene, settings, &|event| teller.tell(event))?;
+    teller.finish(report.interrupted)?;
+    Ok(report)
 }

@@ -7,8 +7,9 @@ mod slice;
 use super::Quality;
 use super::series::step;
 use crate::data::{DefectLine, NematicSweep, Slice};
-use crate::plot::color::{Rgb, Scale};
-use crate::plot::panel::Axis;
+use crate::plot::canvas::Canvas;
+use crate::plot::color::{QUIET, Rgb, Scale};
+use crate::plot::panel::{Axis, Panel};
 use crate::plot::solids::{Solids, view};
 use nalgebra::Vector3;
 use topo_analysis::buckling;
@@ -85,6 +86,19 @@ pub fn winding_axis(sweep: &NematicSweep) -> Axis {
 /// Place of the dashed line that marks the buckling, between the last flat and the first buckled ring.
 pub fn onset(sweep: &NematicSweep) -> Option<f64> {
     buckling(&sweep.rows).map(|q| f64::from(q) - 0.5)
+}
+
+/// Draws that line into a panel over the windings.
+pub fn mark_onset(sweep: &NematicSweep, canvas: &mut Canvas, panel: &Panel) {
+    let Some(x) = onset(sweep).map(|q| panel.place(q, panel.y.range.0)[0]) else {
+        return;
+    };
+    let (top, bottom) = (panel.at[1], panel.at[1] + panel.size[1]);
+    let mut y = top;
+    while y < bottom {
+        canvas.line([x, y], [x, (y + 4.0).min(bottom)], QUIET, 0.9);
+        y += 7.0;
+    }
 }
 
 /// Foot of the nematic figures: quality, and where the runs depart from the published ones.

@@ -60,7 +60,7 @@ fn colloid(sweep: &NematicSweep, row: &NematicRow) -> Result<Value, XtaskError> 
         "flow": row.flow == "on",
         "radius": row.radius,
         "energy": text::significant(row.f_charged, 4),
-        "buckled": row.order_parameter > 0.01,
+        "buckled": row.is_buckled(),
         "scale": scale,
         "rod": rod,
         "extent": slices.first().map_or(row.radius, |s| s.half_size()[0]),

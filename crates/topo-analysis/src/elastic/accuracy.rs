@@ -7,7 +7,7 @@ use topo_knots::KnotTable;
 use topo_rod::{Accuracy, CutSite};
 
 use super::case::{CaseJob, ELASTIC, charge};
-use super::scene::{ElasticCase, ElasticScene};
+use super::scene::ElasticScene;
 use crate::AnalysisError;
 use crate::knots::Shapes;
 use crate::progress::Event;
@@ -118,11 +118,7 @@ pub fn measure_accuracy(
             };
             let run = |scene: &ElasticScene, site: CutSite| -> Result<_, AnalysisError> {
                 let clock = CpuClock::start();
-                let mut case = ElasticCase {
-                    knot: name.clone(),
-                    rod: scene.rod.clone(),
-                };
-                case.rod.twist = Some(twist);
+                let case = scene.case(&name, Some(twist));
                 let refuse = |source| AnalysisError::Rod {
                     case: case.name(),
                     source,

@@ -6,7 +6,7 @@ use topo_knots::KnotTable;
 use topo_rod::{CutSite, DischargeSettings, energy_density};
 
 use super::case::{CaseJob, charge};
-use super::scene::{ElasticCase, ElasticScene};
+use super::scene::ElasticScene;
 use crate::AnalysisError;
 use crate::knots::Shapes;
 
@@ -36,11 +36,7 @@ pub fn discharge_frames(
     table: &KnotTable,
     interrupt: &Interrupt,
 ) -> Result<Vec<ShapeFrame>, AnalysisError> {
-    let mut case = ElasticCase {
-        knot: table.get(knot)?.name.clone(),
-        rod: scene.rod.clone(),
-    };
-    case.rod.twist = Some(twist);
+    let case = scene.case(&table.get(knot)?.name, Some(twist));
     let Some(tight) = shapes.get(&case.knot) else {
         return Ok(Vec::new());
     };

@@ -115,17 +115,21 @@ impl ElasticScene {
         } else {
             self.twists.iter().copied().map(Some).collect()
         };
-        let case = |knot: &String, twist| ElasticCase {
-            knot: knot.clone(),
+        Ok(names
+            .iter()
+            .flat_map(|knot| twists.iter().map(move |t| self.case(knot, *t)))
+            .collect())
+    }
+
+    /// The case of one knot at one twist; without a twist, none is modelled.
+    pub(super) fn case(&self, knot: &str, twist: Option<f64>) -> ElasticCase {
+        ElasticCase {
+            knot: knot.to_owned(),
             rod: RodParameters {
                 twist,
                 ..self.rod.clone()
             },
-        };
-        Ok(names
-            .iter()
-            .flat_map(|knot| twists.iter().map(move |t| case(knot, *t)))
-            .collect())
+        }
     }
 
     /// Where files with the scene's tables lie below an output folder.

@@ -4,15 +4,9 @@ use serde::{Deserialize, Serialize};
 
 use super::table::NematicRow;
 
-/// Order parameter above which a ring counts as buckled; symmetry makes it zero below, to the residual of the charge.
-pub const BUCKLED: f64 = 0.01;
-
 /// Smallest q with a buckled ring, of rows that differ in q only.
 pub fn buckling(rows: &[NematicRow]) -> Option<u32> {
-    rows.iter()
-        .filter(|r| r.order_parameter > BUCKLED)
-        .map(|r| r.q)
-        .min()
+    rows.iter().filter(|r| r.is_buckled()).map(|r| r.q).min()
 }
 
 /// The q that is discharged fastest by a measure of time, with its rate; `None` if no row has that time.

@@ -63,6 +63,9 @@ pub struct NematicRow {
     pub warnings: String,
 }
 
+/// Order parameter above which a ring counts as buckled.
+const BUCKLED: f64 = 0.01;
+
 impl NematicRow {
     /// Folder of the case, unique within a sweep.
     pub fn case_name(&self) -> String {
@@ -70,6 +73,11 @@ impl NematicRow {
             "q{:02}_r{}_h{}_{}_{}_flow-{}",
             self.q, self.radius, self.spacing, self.boundary, self.precision, self.flow
         )
+    }
+
+    /// Whether the ring is buckled; symmetry makes the order parameter zero below, to the residual of the charge.
+    pub fn is_buckled(&self) -> bool {
+        self.order_parameter > BUCKLED
     }
 
     /// t50, t90, t99 and t99.9, relative to the energy after the switch.

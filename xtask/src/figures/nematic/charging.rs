@@ -1,12 +1,12 @@
 //! Charging the colloid: the ring and its profiles, its buckling, the order parameter and the free energy.
 
-use super::{colloid, face, onset, profile_scale, winding_axis};
+use super::{colloid, face, mark_onset, onset, profile_scale, winding_axis};
 use crate::data::NematicSweep;
 use crate::error::XtaskError;
 use crate::figures::series::{Table, bounds, line, step};
 use crate::figures::{Context, Drawn, Figure};
 use crate::plot::canvas::Canvas;
-use crate::plot::color::{BLUE, INK, QUIET, Scale, VERMILION};
+use crate::plot::color::{BLUE, INK, Scale, VERMILION};
 use crate::plot::panel::{Axis, Panel};
 use crate::plot::style::Style;
 use crate::plot::text;
@@ -107,7 +107,7 @@ fn profile_bar(canvas: &mut Canvas, at: [f64; 2]) {
 
 fn rings(sweep: &NematicSweep, canvas: &mut Canvas) -> Result<(), XtaskError> {
     let n = sweep.rows.len();
-    let buckled = sweep.rows.iter().position(|r| r.order_parameter > 0.01);
+    let buckled = sweep.rows.iter().position(NematicRow::is_buckled);
     let mut picked = match buckled {
         Some(k) => vec![0, k / 2, k.saturating_sub(1), k, (k + n) / 2, n - 1],
         None => (0..6).map(|k| k * (n - 1) / 5).collect(),
@@ -179,18 +179,6 @@ fn vectors(sweep: &NematicSweep, canvas: &mut Canvas, table: &mut Table) {
     }
 }
 
-fn dashed(canvas: &mut Canvas, panel: &Panel, at: Option<f64>) {
-    let Some(x) = at.map(|q| panel.place(q, panel.y.range.0)[0]) else {
-        return;
-    };
-    let (top, bottom) = (panel.at[1], panel.at[1] + panel.size[1]);
-    let mut y = top;
-    while y < bottom {
-        canvas.line([x, y], [x, (y + 4.0).min(bottom)], QUIET, 0.9);
-        y += 7.0;
-    }
-}
-
 fn order(sweep: &NematicSweep, canvas: &mut Canvas, table: &mut Table) {
     let sizes: Vec<(f64, f64)> = sweep
         .rows
@@ -209,7 +197,7 @@ fn order(sweep: &NematicSweep, canvas: &mut Canvas, table: &mut Table) {
         table.row(&["d", &x.to_string()], &[*x, *y]);
     }
     panel.draw(canvas, marked(sizes, BLUE), &[]);
-    dashed(canvas, &panel, onset(sweep));
+    mark_onset(sweep, canvas, &panel);
 }
 
 fn marked(points: Vec<(f64, f64)>, color: &str) -> Vec<Plot> {
@@ -241,7 +229,7 @@ fn energy(sweep: &NematicSweep, canvas: &mut Canvas, table: &mut Table) {
         table.row(&["e", &x.to_string()], &[*x, *y]);
     }
     panel.draw(canvas, marked(values, VERMILION), &[]);
-    dashed(canvas, &panel, onset(sweep));
+    mark_onset(sweep, canvas, &panel);
     if let Some(x) = onset(sweep) {
         let [px, py] = panel.place(x, 0.0);
         let style = Style::default().size(8.5).color(INK).end();
@@ -255,7 +243,7 @@ fn finding(sweep: &NematicSweep) -> String {
     let ring = sweep
         .rows
         .iter()
-        .filter(|r| r.order_parameter > 0.01)
+        .filter(|r| r.is_buckled())
         .filter_map(|r| Some((r.q, r.ring_mode?)))
         .collect::<Vec<_>>();
     let modes = if ring.is_empty() {

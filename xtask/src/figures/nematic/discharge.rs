@@ -1,7 +1,7 @@
 //! Discharging the colloid: director and flow, energy against time, and the rates against q.
 
 use super::slice::{self, Look};
-use super::{face, onset, winding_axis};
+use super::{face, mark_onset, winding_axis};
 use crate::data::{DefectLine, NematicSweep, Slice};
 use crate::error::XtaskError;
 use crate::figures::series::{Table, bounds, line, log_bounds};
@@ -205,13 +205,7 @@ fn rates(
         plots.push(Plot::Scatter(dots));
     }
     panel.draw(canvas, plots, &[]);
-    if let Some(x) = onset(sweep).map(|q| panel.place(q, range.0)[0]) {
-        let mut y = panel.at[1];
-        while y < panel.at[1] + panel.size[1] {
-            canvas.line([x, y], [x, y + 4.0], QUIET, 0.9);
-            y += 7.0;
-        }
-    }
+    mark_onset(sweep, canvas, &panel);
     for (k, (label, color, _)) in shown.iter().enumerate() {
         let y = panel.at[1] + 16.0 + 12.0 * k as f64;
         let style = Style::default().bold().halo().size(9.5).color(color);
