@@ -7,6 +7,7 @@ mod ci;
 mod compare;
 mod figures;
 mod knot;
+mod packages;
 mod run;
 mod test;
 

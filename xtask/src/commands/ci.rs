@@ -1,16 +1,16 @@
 //! `cargo xtask ci`: what must pass before a change lands.
 
 use super::cargo::{cargo, step};
-use super::test;
+use super::{packages, test};
 use crate::error::XtaskError;
 use crate::provenance::workspace;
 use std::path::PathBuf;
 
 pub fn run() -> Result<(), XtaskError> {
-    let mut failed: Vec<&str> = Vec::new();
-    let mut check = |name: &'static str, command| -> Result<(), XtaskError> {
+    let mut failed: Vec<String> = Vec::new();
+    let mut check = |name: &str, command| -> Result<(), XtaskError> {
         if !step(name, command, |_| {})? {
-            failed.push(name);
+            failed.push(name.to_owned());
         }
         Ok(())
     };
@@ -34,10 +34,12 @@ pub fn run() -> Result<(), XtaskError> {
         "package",
         cargo(&["package", "--workspace", "--no-verify", "--quiet"]),
     )?;
-    check("packages build", package()?)?;
+    for (name, command) in packages::checks(&target())? {
+        check(&name, command)?;
+    }
     let (counts, ok) = test::all(false)?;
     if !ok {
-        failed.push("tests");
+        failed.push("tests".to_owned());
     }
     let verdict = if failed.is_empty() {
         "all steps passed".to_owned()
@@ -51,34 +53,6 @@ pub fn run() -> Result<(), XtaskError> {
     } else {
         Err(XtaskError::Step(format!("ci {verdict}")))
     }
-}
-
-/// Builds every crate that can be published from its package, as a stranger would.
-///
-/// Cargo takes a package of a given version for unchanging and could build against what an
-/// earlier run left; so the workspace's own crates are forgotten first, in a folder of their
-/// own. It only counts whether they build, not how fast they run.
-fn package() -> Result<std::process::Command, XtaskError> {
-    let target = target().join("package-check");
-    let kept = std::fs::read_dir(target.join("debug/.fingerprint"))
-        .into_iter()
-        .flatten()
-        .flatten();
-    for old in kept.filter(|e| e.file_name().to_string_lossy().starts_with("topo-")) {
-        std::fs::remove_dir_all(old.path()).map_err(|source| XtaskError::File {
-            path: old.path(),
-            source,
-        })?;
-    }
-    let mut package = cargo(&["package", "--workspace", "--quiet"]);
-    for private in ["xtask", "topo-tests", "topo-bench"] {
-        package.args(["--exclude", private]);
-    }
-    package.env("CARGO_TARGET_DIR", target);
-    package
-        .env("CARGO_PROFILE_DEV_DEBUG", "false")
-        .env("CARGO_PROFILE_DEV_OPT_LEVEL", "0");
-    Ok(package)
 }
 
 /// Cargo's target folder.

@@ -1,0 +1,62 @@
+//! Whether every crate builds from its package alone, as a stranger gets it.
+
+use super::cargo::cargo;
+use crate::error::XtaskError;
+use crate::provenance::workspace;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// One named check a crate, from the packages that `cargo package` left in `target`.
+///
+/// The packages are unpacked beside each other into a workspace of their own. `cargo package`
+/// can build them itself, but through a cache outside the target folder that takes a package
+/// of a given version for unchanging: it may build against what an earlier run left there.
+pub fn checks(target: &Path) -> Result<Vec<(String, Command)>, XtaskError> {
+    let root = target.join("package-check");
+    if root.exists() {
+        std::fs::remove_dir_all(&root).map_err(at(&root))?;
+    }
+    std::fs::create_dir_all(&root).map_err(at(&root))?;
+    let version = env!("CARGO_PKG_VERSION");
+    let names = names()?;
+    let mut manifest =
+        "[workspace]\nresolver = \"3\"\nmembers = [\"topo-*\"]\n\n[patch.crates-io]\n".to_owned();
+    for name in &names {
+        let package = target.join(format!("package/{name}-{version}.crate"));
+        let file = std::fs::File::open(&package).map_err(at(&package))?;
+        tar::Archive::new(flate2::read::GzDecoder::new(file))
+            .unpack(&root)
+            .map_err(at(&package))?;
+        manifest += &format!("{name} = {{ path = \"{name}-{version}\" }}\n");
+    }
+    let file = root.join("Cargo.toml");
+    std::fs::write(&file, manifest).map_err(at(&file))?;
+    let lock = root.join("Cargo.lock");
+    std::fs::copy(workspace().join("Cargo.lock"), &lock).map_err(at(&lock))?;
+    let check = |name: &String| {
+        let mut command = cargo(&["check", "--release", "--quiet", "--package", name]);
+        command.current_dir(&root).env("CARGO_TARGET_DIR", target);
+        (format!("package {name} builds"), command)
+    };
+    Ok(names.iter().map(check).collect())
+}
+
+/// The crates to be published: every folder of `crates/`.
+fn names() -> Result<Vec<String>, XtaskError> {
+    let folder = workspace().join("crates");
+    let mut names = Vec::new();
+    for entry in std::fs::read_dir(&folder).map_err(at(&folder))? {
+        let entry = entry.map_err(at(&folder))?;
+        names.push(entry.file_name().to_string_lossy().into_owned());
+    }
+    names.sort();
+    Ok(names)
+}
+
+fn at(path: &Path) -> impl Fn(std::io::Error) -> XtaskError {
+    let path: PathBuf = path.to_owned();
+    move |source| XtaskError::File {
+        path: path.clone(),
+        source,
+    }
+}
