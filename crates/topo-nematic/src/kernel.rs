@@ -2,10 +2,12 @@
 
 pub(crate) mod combine;
 mod elementwise;
+mod prefetch;
 pub(crate) mod run;
 pub(crate) mod second;
 
 use crate::Material;
+use crate::kernel::prefetch::prefetch;
 use crate::real::{Lanes, Real};
 
 /// Widest vector, in numbers.
@@ -60,6 +62,8 @@ pub(crate) struct Stretch<'a, T, S> {
 pub(crate) trait Sides<L: Lanes> {
     /// Component `c` at neighbour `side` of the cells from `at` on.
     fn load(&self, token: L::Token, field: &[L::Scalar], side: usize, c: usize, at: usize) -> L;
+    /// Calls for what [`load`](Self::load) will want of a component soon.
+    fn prefetch(&self, field: &[L::Scalar], at: usize);
 }
 
 /// All in the field: the first neighbour at each side.
@@ -74,6 +78,14 @@ impl<L: Lanes> Sides<L> for InField {
         let from = self.0[side] + at;
         L::load(token, &field[from..from + L::N])
     }
+
+    #[inline(always)]
+    fn prefetch(&self, field: &[L::Scalar], at: usize) {
+        // Not the row at -y: it was the row itself a moment ago.
+        for row in &self.0[1..] {
+            prefetch::<_, 512>(field, row + at);
+        }
+    }
 }
 
 impl<L: Lanes> Sides<L> for Copies<'_, L::Scalar> {
@@ -81,6 +93,9 @@ impl<L: Lanes> Sides<L> for Copies<'_, L::Scalar> {
     fn load(&self, token: L::Token, _field: &[L::Scalar], side: usize, c: usize, at: usize) -> L {
         L::load(token, &self.0[side][c][at..at + L::N])
     }
+
+    #[inline(always)]
+    fn prefetch(&self, _field: &[L::Scalar], _at: usize) {}
 }
 
 /// What is done with the molecular field of a few cells.
@@ -150,6 +165,9 @@ pub(crate) fn pass<L: Lanes, S: Sides<L>, U: Update<L>>(
             #[inline(always)]
             |c| L::load(token, &centre[c][start + at..start + at + L::N]),
         );
+        for component in centre {
+            stretch.sides.prefetch(component, at);
+        }
         let [xx, xy, xz, yy, yz] = q;
         let squares = [xx * xx, xy * xy, xz * xz, yy * yy, yz * yz];
         let half = xx.mul_add(

@@ -1,5 +1,6 @@
 //! Linear combinations of field, old values and other arrays, written by the kernel in the same pass.
 
+use crate::kernel::prefetch::prefetch;
 use crate::kernel::{Update, five};
 use crate::real::Lanes;
 
@@ -53,6 +54,10 @@ impl<L: Lanes, const OLD: bool, const INPUTS: usize, const SUMS: bool> Update<L>
         let (to, from) = (self.out_start + at, self.start + at);
         let f = &self.factors;
         for c in 0..5 {
+            prefetch::<_, 1024>(self.out[c], to);
+            for input in &self.inputs {
+                prefetch::<_, 1024>(input[c], from);
+            }
             let mut sum = f.on_field * h[c];
             sum = f.on_q.mul_add(q[c], sum);
             if OLD {
