@@ -172,6 +172,71 @@ fn law_threads_and_resumed_runs_give_the_same_bits() {
 }
 
 #[test]
+fn law_interrupted_discharges_go_on_to_the_same_bits() {
+    let flow = |every| DischargeSettings {
+        until_released: 0.8,
+        flow: Some(FlowParameters {
+            every,
+            ..Default::default()
+        }),
+        ..Default::default()
+    };
+    let still = DischargeSettings {
+        until_released: 0.8,
+        ..Default::default()
+    };
+    let cases = [
+        (Precision::Double, None, flow(1)),
+        (Precision::Single, None, flow(3)),
+        (Precision::Double, Some(5.0), flow(1)),
+        (Precision::Double, Some(5.0), still),
+    ];
+    for (precision, ramp, settings) in cases {
+        let accuracy = NematicAccuracy {
+            precision,
+            ..Default::default()
+        };
+        let charged = charge_of(&small(2), &accuracy);
+        let whole = discharge_of(&charged, SwitchTarget::default(), ramp, &settings);
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("run.ckpt");
+        let to = SwitchSettings {
+            to: SwitchTarget::default(),
+            ramp,
+        };
+        let switched = charged.switch(&to).unwrap();
+        for stop_at in [7, 19, u64::MAX] {
+            let interrupt = Interrupt::new();
+            let mut stop_early = |p: &Progress| {
+                if p.step == stop_at {
+                    interrupt.request();
+                }
+            };
+            let mut hooks = RunHooks::new(&interrupt)
+                .with_progress(&mut stop_early)
+                .with_checkpoint(&path, 1e6);
+            let run = switched.discharge(&settings, &mut hooks).unwrap();
+            if stop_at < u64::MAX {
+                assert_eq!(run.record.report.n_steps, stop_at);
+                continue;
+            }
+            let (report, expected) = (&run.record.report, &whole.record.report);
+            assert_eq!(run.state, whole.state, "{ramp:?}");
+            assert_eq!(run.record.curve, whole.record.curve);
+            assert_eq!(report.ledger_residual, expected.ledger_residual);
+            assert_eq!(report.counters, expected.counters);
+            let counts = |r: &topo_nematic::PhaseReport| r.flow.as_ref().map(|f| f.counters);
+            assert_eq!(counts(report), counts(expected));
+            for (a, b) in run.record.samples.iter().zip(&whole.record.samples) {
+                assert_eq!(a.time, b.time);
+                assert_eq!(a.max_speed, b.max_speed);
+            }
+            assert_eq!(run.record.samples.len(), whole.record.samples.len());
+        }
+    }
+}
+
+#[test]
 fn law_single_precision_changes_little() {
     let run = |precision| {
         let accuracy = NematicAccuracy {

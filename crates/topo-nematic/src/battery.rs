@@ -1,8 +1,10 @@
 //! The nematic battery: charge (patterned anchoring, relax) → release (switch the anchoring) → discharge.
 
 pub(crate) mod charge;
+mod coupled_flow;
 pub(crate) mod discharge;
 pub(crate) mod hooks;
+mod ramp;
 pub(crate) mod record;
 pub(crate) mod switch;
 

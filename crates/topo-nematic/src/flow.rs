@@ -7,6 +7,7 @@ mod rate;
 mod stencil;
 mod terms;
 
+pub(crate) use coupling::FlowMemory;
 pub use coupling::{FlowCounters, FlowCoupling, FlowParameters, FlowSolver};
 pub use stencil::Stored;
 

@@ -13,6 +13,7 @@ mod spectral;
 pub use drive::Drive;
 pub use error::StokesError;
 pub use field::MacField;
+pub(crate) use no_slip::NoSlipMemory;
 pub use no_slip::{NoSlip, NoSlipReport};
 pub use sites::FaceSites;
 pub use solver::StokesSolver;

@@ -6,20 +6,18 @@ use topo_core::{
     StopReason, in_range, positive,
 };
 
+use super::coupled_flow::{CoupledFlow, CoupledMemory, extra};
 use super::hooks::{Phase, Progress, RunHooks};
+use super::ramp::{RAMP_STEPS, Ramp};
 use super::record::{CHANNELS, NematicSample, PhaseReport, RunRecord};
 use super::switch::{SwitchTarget, SwitchedNematic, blend, extend_into_cut_cells};
 use crate::anchoring::Anchoring;
-use crate::battery::record::FlowReport;
-use crate::domain::SpecialCell;
-use crate::kernel::run::Kernel;
 use crate::kernel::run::Threads;
 use crate::memory::ByteAccount;
 use crate::real::Real;
-use crate::stabilised::{ExtraRate, Stabilised};
+use crate::stabilised::Stabilised;
 use crate::{
-    EnergyParts, FlowCoupling, FlowParameters, NematicError, NematicState, Precision,
-    order_parameter, ring,
+    EnergyParts, FlowParameters, NematicError, NematicState, Precision, order_parameter, ring,
 };
 
 /// How far a discharge is followed and how often it is looked at.
@@ -74,42 +72,15 @@ impl Discharge {
     }
 }
 
-const SCHEMA: &str = "nematic-discharge/2";
+const SCHEMA: &str = "nematic-discharge/3";
 /// First step, in h²/(Gamma L).
 const FIRST_STEP: f64 = 1e-3;
-
-/// Steps of a ramp, at least.
-const RAMP_STEPS: f64 = 64.0;
-
-/// The anchoring while it is ramped: a kernel whose links are set for each step, and the links at both ends.
-struct Ramp<T> {
-    duration: f64,
-    kernel: Kernel<T>,
-    ends: [Vec<SpecialCell>; 2],
-}
-
-impl<T: Real> Ramp<T> {
-    fn new(switched: &SwitchedNematic, duration: f64, threads: Threads, gapless: bool) -> Self {
-        let battery = &switched.charged.battery;
-        let mut kernel = battery.kernel::<T>(&battery.charged_surface(), threads);
-        if gapless {
-            kernel = kernel.without_gaps();
-        }
-        let last = switched.charged.surface_at_end_of_ramp(&switched.settings);
-        let last = battery.kernel::<T>(&last, threads);
-        Self {
-            duration,
-            ends: [kernel.domain.special.clone(), last.domain.special],
-            kernel,
-        }
-    }
-}
 
 /// A discharge that is not finished.
 #[derive(Clone, Serialize, Deserialize)]
 struct Progressing {
     time: f64,
-    dt: f64,
+    control: StepControl,
     n_steps: u64,
     n_trials: u64,
     ledger: Ledger,
@@ -118,6 +89,8 @@ struct Progressing {
     curve: DischargeCurve,
     samples: Vec<NematicSample>,
     cpu_seconds: f64,
+    /// Share of the ramp at which the surface stands.
+    ramped: f64,
 }
 
 impl SwitchedNematic {
@@ -175,22 +148,27 @@ impl SwitchedNematic {
             .ramp
             .map(|duration| Ramp::new(self, duration, accuracy.threads, gapless));
         let mut state = self.state.clone();
-        let resumed: Option<(Progressing, Vec<f64>)> = hooks.resume(SCHEMA, &case)?;
+        let resumed: Option<(Progressing, Vec<f64>, Option<CoupledMemory>)> =
+            hooks.resume(SCHEMA, &case)?;
+        let mut remembered = None;
         let h = battery.grid().spacing();
         let power_unit = material.rotational_mobility * h * h * h;
         let mut run = match resumed {
-            Some((run, q)) => {
+            Some((run, q, memory)) => {
                 state.q_mut().copy_from_slice(&q);
+                remembered = memory;
                 run
             }
             None => {
                 let mut ledger = Ledger::new(&EnergyParts::NAMES, &CHANNELS);
                 let before = self.charged.energy();
                 ledger.set_stored(&before.as_array());
+                let first_step =
+                    FIRST_STEP * h * h / (material.rotational_mobility * material.elastic_constant);
                 Progressing {
                     time: 0.0,
-                    dt: FIRST_STEP * h * h
-                        / (material.rotational_mobility * material.elastic_constant),
+                    control: StepControl::new(accuracy.tolerance, first_step)?
+                        .with_limits(1e-9 * first_step, settings.longest * unit)?,
                     n_steps: 0,
                     n_trials: 0,
                     ledger,
@@ -199,6 +177,7 @@ impl SwitchedNematic {
                     curve: DischargeCurve::new(EnergyParts::NAMES, CHANNELS),
                     samples: Vec::new(),
                     cpu_seconds: 0.0,
+                    ramped: 0.0,
                 }
             }
         };
@@ -206,6 +185,9 @@ impl SwitchedNematic {
         let mut waiting = None;
         if let Some(ramp) = ramp.take_if(|ramp| run.time < ramp.duration) {
             waiting = Some((std::mem::replace(&mut kernel, ramp.kernel), ramp.ends));
+        }
+        if let Some((_, ends)) = waiting.as_ref().filter(|_| run.ramped > 0.0) {
+            blend(&mut kernel, &ends[0], &ends[1], run.ramped);
         }
         let mut field = {
             let mut q = vec![T::of(0.0); kernel.array_length()];
@@ -222,8 +204,6 @@ impl SwitchedNematic {
         let start = self.start();
         let goal = (1.0 - settings.until_released) * start;
         let until = settings.longest * unit;
-        let mut control =
-            StepControl::new(accuracy.tolerance, run.dt)?.with_limits(1e-9 * run.dt, until)?;
         let mut outputs =
             Schedule::log_spaced(settings.first_output * unit, settings.outputs_per_decade)?;
         if let Some(last) = run.samples.last() {
@@ -234,7 +214,10 @@ impl SwitchedNematic {
         if let Some(flow) = &mut flow {
             // The energy weighs the molecular field by these masses, and so must the force.
             flow.coupling.set_weights(&kernel.domain.masses());
-            flow.update(&kernel, &mut field)?;
+            // A checkpoint of this very case fits; were it not so, the flow would start anew.
+            if !remembered.is_some_and(|memory| flow.restore(memory)) {
+                flow.update(&kernel, &mut field)?;
+            }
         }
         field.update_rate(&kernel, extra(&flow));
         if run.n_steps > 0 {
@@ -274,10 +257,10 @@ impl SwitchedNematic {
             }
             if hooks.is_due() {
                 kernel.gather(&field.q, state.q_mut());
-                run.dt = control.dt();
                 run.counters = field.counters;
                 run.cpu_seconds = earlier + clock.seconds();
-                hooks.save(SCHEMA, &case, &(&run, state.q_tensor()))?;
+                let memory = flow.as_ref().map(CoupledFlow::memory);
+                hooks.save(SCHEMA, &case, &(&run, state.q_tensor(), memory))?;
             }
             if hooks.is_interrupted() {
                 break StopReason::Interrupted;
@@ -287,7 +270,7 @@ impl SwitchedNematic {
             }
             run.n_trials += 1;
             let remaining = until - run.time;
-            let mut dt = control.dt().min(longest).min(remaining);
+            let mut dt = run.control.dt().min(longest).min(remaining);
             if let (Some((_, ends)), Some(duration)) = (&waiting, self.settings.ramp) {
                 // The surface changes at the middle of each step; what that takes is work.
                 let left = duration - run.time;
@@ -295,12 +278,8 @@ impl SwitchedNematic {
                 if dt > 0.99 * left {
                     dt = left;
                 }
-                blend(
-                    &mut kernel,
-                    &ends[0],
-                    &ends[1],
-                    (run.time + 0.5 * dt) / duration,
-                );
+                run.ramped = (run.time + 0.5 * dt) / duration;
+                blend(&mut kernel, &ends[0], &ends[1], run.ramped);
                 let changed = kernel.energy(&field.q);
                 run.ledger.add_work(changed.total() - energy.total());
                 energy = changed;
@@ -308,7 +287,7 @@ impl SwitchedNematic {
             }
             let result = field.try_step(&kernel, dt, extra(&flow)).and_then(|error| {
                 let error = error / material.order().max(1e-3);
-                control.judge(error).map(|()| error)
+                run.control.judge(error).map(|()| error)
             });
             match result {
                 Ok(error) => {
@@ -326,7 +305,7 @@ impl SwitchedNematic {
                     }
                     energy = kernel.energy(&field.q);
                     run.ledger.set_stored(&energy.as_array());
-                    control.accept(dt, error, 3);
+                    run.control.accept(dt, error, 3);
                     run.time = if dt < remaining { run.time + dt } else { until };
                     run.n_steps += 1;
                     let over = self
@@ -377,7 +356,7 @@ impl SwitchedNematic {
                     if matches!(why, Rejection::Fatal { .. }) {
                         break StopReason::Failed { why };
                     }
-                    if control.reject(dt, &why, 3).is_none() {
+                    if run.control.reject(dt, &why, 3).is_none() {
                         break StopReason::StepTooSmall { dt, last: why };
                     }
                 }
@@ -414,84 +393,6 @@ impl SwitchedNematic {
             state,
         })
     }
-}
-
-/// The flow of a discharge and what is remembered of it.
-struct CoupledFlow {
-    coupling: FlowCoupling,
-    max_speed: f64,
-    boundary_residual: f64,
-}
-
-impl CoupledFlow {
-    fn new(switched: &SwitchedNematic, parameters: &FlowParameters) -> Result<Self, NematicError> {
-        let battery = &switched.charged.battery;
-        let coupling = FlowCoupling::new(
-            battery.grid(),
-            battery.particle(),
-            &battery.parameters().material,
-            parameters,
-        )?;
-        Ok(Self {
-            coupling,
-            max_speed: 0.0,
-            boundary_residual: 0.0,
-        })
-    }
-
-    fn update<T: Real>(
-        &mut self,
-        kernel: &Kernel<T>,
-        field: &mut Stabilised<T>,
-    ) -> Result<(), NematicError> {
-        let (q, h) = field.with_molecular_field(kernel);
-        self.coupling.update(q, h)?;
-        self.remember(field);
-        Ok(())
-    }
-
-    fn after_step<T: Real>(
-        &mut self,
-        kernel: &Kernel<T>,
-        field: &mut Stabilised<T>,
-    ) -> Result<(), NematicError> {
-        let (q, h) = if self.coupling.is_due() {
-            field.with_molecular_field(kernel)
-        } else {
-            // Only the step is counted.
-            (&field.q[..], &field.q[..])
-        };
-        if self.coupling.after_step(q, h)? {
-            self.remember(field);
-        }
-        Ok(())
-    }
-
-    fn remember<T: Real>(&mut self, field: &mut Stabilised<T>) {
-        field.forget_rate();
-        self.max_speed = self.max_speed.max(self.coupling.max_speed());
-        let residual = self.coupling.boundary_residual();
-        self.boundary_residual = self.boundary_residual.max(residual);
-    }
-
-    fn report(&self) -> FlowReport {
-        FlowReport {
-            solver: self.coupling.solver(),
-            counters: self.coupling.counters(),
-            max_speed: self.max_speed,
-            boundary_residual: self.boundary_residual,
-        }
-    }
-}
-
-impl<T: Real> ExtraRate<T> for CoupledFlow {
-    fn add_rate(&self, q: &[T], rate: &mut [T]) {
-        self.coupling.add_rate(q, rate);
-    }
-}
-
-fn extra<T: Real>(flow: &Option<CoupledFlow>) -> Option<&dyn ExtraRate<T>> {
-    flow.as_ref().map(|f| f as &dyn ExtraRate<T>)
 }
 
 /// Mean of a power that decays exponentially from one value to the other.

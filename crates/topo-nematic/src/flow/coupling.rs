@@ -12,7 +12,8 @@ use crate::grid::{Faces, Grid};
 use crate::material::Material;
 use crate::particle::Particle;
 use crate::stokes::{
-    Drive, MacField, NoSlip, Sparse, SparseOptions, Spectral, StokesError, StokesSolver,
+    Drive, MacField, NoSlip, NoSlipMemory, Sparse, SparseOptions, Spectral, StokesError,
+    StokesSolver,
 };
 
 /// Which solver finds the flow.
@@ -126,6 +127,20 @@ pub struct FlowCoupling {
     level: Level,
     n_updates: u64,
     n_steps: u64,
+    power: f64,
+    dissipation: f64,
+    residual: f64,
+}
+
+/// What a checkpoint keeps of a flow.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(crate) struct FlowMemory {
+    velocity: MacField,
+    no_slip: Option<NoSlipMemory>,
+    n_updates: u64,
+    n_steps: u64,
+    n_solves: [u64; 2],
+    n_iterations: u64,
     power: f64,
     dissipation: f64,
     residual: f64,
@@ -250,6 +265,41 @@ impl FlowCoupling {
         }
         self.n_updates += 1;
         Ok(())
+    }
+
+    /// What a later run needs to go on to the same bits: velocity, warm start and counters.
+    pub(crate) fn memory(&self) -> FlowMemory {
+        FlowMemory {
+            velocity: self.velocity.clone(),
+            no_slip: self.no_slip.as_ref().map(NoSlip::memory),
+            n_updates: self.n_updates,
+            n_steps: self.n_steps,
+            n_solves: self.solver.n_solves(),
+            n_iterations: self.solver.n_iterations(),
+            power: self.power,
+            dissipation: self.dissipation,
+            residual: self.residual,
+        }
+    }
+
+    /// Goes on from a memory; whether it fits this grid and particle.
+    pub(crate) fn restore(&mut self, memory: FlowMemory) -> bool {
+        let fits = memory.velocity.cells() == self.velocity.cells()
+            && match (&mut self.no_slip, memory.no_slip) {
+                (Some(own), Some(kept)) => own.restore(kept),
+                (None, None) => true,
+                _ => false,
+            };
+        if fits {
+            self.velocity = memory.velocity;
+            self.n_updates = memory.n_updates;
+            self.n_steps = memory.n_steps;
+            self.solver.set_counts(memory.n_solves, memory.n_iterations);
+            self.power = memory.power;
+            self.dissipation = memory.dissipation;
+            self.residual = memory.residual;
+        }
+        fits
     }
 
     /// Counts an accepted step, and updates the velocity if its turn has come; whether it did.

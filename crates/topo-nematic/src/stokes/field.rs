@@ -1,5 +1,7 @@
 //! Vector fields on the faces of the cells.
 
+use serde::{Deserialize, Serialize};
+
 use crate::grid::Grid;
 use crate::stokes::reduce::{larger, max_over, sum_over};
 
@@ -15,7 +17,7 @@ use crate::stokes::reduce::{larger, max_over, sum_over};
 ///
 /// # References
 /// `harlow1965`
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MacField {
     cells: [usize; 3],
     components: [Vec<f64>; 3],

@@ -1,5 +1,6 @@
 //! A sphere held at rest: unknown forces on the faces of its boundary.
 
+use serde::{Deserialize, Serialize};
 use topo_core::positive;
 
 use crate::grid::{Faces, Grid};
@@ -45,6 +46,14 @@ pub struct NoSlip {
     residual: Vec<f64>,
     direction: Vec<f64>,
     image: Vec<f64>,
+    n_iterations: u64,
+}
+
+/// Forces and earlier solutions, for a checkpoint.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(crate) struct NoSlipMemory {
+    forces: Vec<f64>,
+    history: history::Kept,
     n_iterations: u64,
 }
 
@@ -187,6 +196,25 @@ impl NoSlip {
     /// Iterations so far.
     pub fn n_iterations(&self) -> u64 {
         self.n_iterations
+    }
+
+    /// What a later run needs to go on to the same bits.
+    pub(crate) fn memory(&self) -> NoSlipMemory {
+        NoSlipMemory {
+            forces: self.forces.clone(),
+            history: self.history.kept(),
+            n_iterations: self.n_iterations,
+        }
+    }
+
+    /// Goes on from a memory; whether it is of the same boundary.
+    pub(crate) fn restore(&mut self, memory: NoSlipMemory) -> bool {
+        let fits = memory.forces.len() == self.forces.len() && self.history.restore(memory.history);
+        if fits {
+            self.forces = memory.forces;
+            self.n_iterations = memory.n_iterations;
+        }
+        fits
     }
 
     /// Forgets earlier solutions, as after a jump in time or a checkpoint.

@@ -41,6 +41,9 @@ pub trait StokesSolver: Send + Sync {
         0
     }
 
+    /// Goes on counting from what an earlier run had reached.
+    fn set_counts(&mut self, n_solves: [u64; 2], n_iterations: u64);
+
     /// Bytes held.
     fn n_bytes(&self) -> usize;
 

@@ -274,6 +274,10 @@ impl StokesSolver for Sparse {
         self.n_iterations
     }
 
+    fn set_counts(&mut self, n_solves: [u64; 2], n_iterations: u64) {
+        (self.n_solves, self.n_iterations) = (n_solves, n_iterations);
+    }
+
     fn n_bytes(&self) -> usize {
         self.minres.n_bytes()
             + self

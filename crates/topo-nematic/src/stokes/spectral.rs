@@ -379,6 +379,10 @@ impl StokesSolver for Spectral {
         self.viscosity
     }
 
+    fn set_counts(&mut self, n_solves: [u64; 2], _n_iterations: u64) {
+        self.n_solves = n_solves;
+    }
+
     fn n_solves(&self) -> [u64; 2] {
         self.n_solves
     }

@@ -1,5 +1,7 @@
 //! Earlier solutions of a symmetric system, and the best start they can give.
 
+use serde::{Deserialize, Serialize};
+
 use crate::stokes::field::dot;
 
 /// Solutions kept.
@@ -17,6 +19,14 @@ pub(super) struct History {
     n_pushed: usize,
 }
 
+/// What a checkpoint keeps of a history: the basis is made anew from it.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(in crate::stokes) struct Kept {
+    solutions: [Vec<f64>; N_KEPT],
+    images: [Vec<f64>; N_KEPT],
+    n_pushed: usize,
+}
+
 impl History {
     pub fn new(n: usize) -> Self {
         let zeros = || std::array::from_fn(|_| vec![0.0; n]);
@@ -31,6 +41,29 @@ impl History {
 
     pub fn clear(&mut self) {
         self.n_pushed = 0;
+    }
+
+    pub fn kept(&self) -> Kept {
+        Kept {
+            solutions: self.solutions.clone(),
+            images: self.images.clone(),
+            n_pushed: self.n_pushed,
+        }
+    }
+
+    /// Takes up what was kept; whether it is of the same size.
+    pub fn restore(&mut self, kept: Kept) -> bool {
+        let n = self.solutions[0].len();
+        let fits = kept
+            .solutions
+            .iter()
+            .chain(&kept.images)
+            .all(|x| x.len() == n);
+        if fits {
+            (self.solutions, self.images) = (kept.solutions, kept.images);
+            self.n_pushed = kept.n_pushed;
+        }
+        fits
     }
 
     /// Keeps the solution `x` of S x = b - r.
