@@ -3,6 +3,7 @@
 use crate::figures::Quality;
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
+use topo_analysis::Shard;
 
 mod knot;
 
@@ -26,12 +27,14 @@ pub enum Command {
     #[command(after_help = "Examples:
   cargo xtask figures                              all figures, draft quality
   cargo xtask figures --only elastic-discharge     one of them
-  cargo xtask figures --quality standard --out results-standard")]
+  cargo xtask figures --quality standard --out results-standard
+  cargo xtask figures --quality paper --shard 2/4 --out part-2    every fourth case, to be merged")]
     Figures(FiguresArgs),
     /// Run the scene of a file: charge, cut, discharge.
     #[command(after_help = "Examples:
   cargo xtask run scenes/trefoil.toml
-  cargo xtask run scenes/trefoil.toml --cuts all:8 --out my-results")]
+  cargo xtask run scenes/trefoil.toml --cuts all:8 --out my-results
+  cargo xtask run scenes/nematic-quick.toml --fields --out fields    with files for `cargo xtask export`")]
     Run(RunArgs),
     /// Measure the error of discharge times: 34 fixed cases against finer runs of the same cuts.
     #[command(after_help = "Examples:
@@ -42,6 +45,17 @@ pub enum Command {
     #[command(after_help = "Example:
   cargo xtask compare results results-again")]
     Compare(CompareArgs),
+    /// Write the shapes and fields of a case for ParaView, PyVista, meshio, numpy or nemaktis.
+    ///
+    /// A fibre becomes a line with arc length, tangent, curvature, twist, stretch and energy density, once charged and over
+    /// its discharge; a colloid becomes its defect lines, the particle's surface, the plane through its centre and, where
+    /// the scene was run with --fields, Q, director, order and velocity in all of the cell.
+    #[command(after_help = "Examples:
+  cargo xtask export results/elastic/3_1_twist+0.00_shrunk_n200
+  cargo xtask export results/nematic/q04_r15_h1.5_cut-link_f64_flow-on --format vtk --to seen
+  cargo xtask run scenes/nematic-quick.toml --fields --out fields
+  cargo xtask export fields/nematic/q02_r15_h1.5_cut-link_f64_flow-off --format nemaktis")]
+    Export(ExportArgs),
     /// The knot generator: tighten a knot, name a curve, look at the table.
     Knot(KnotArgs),
     /// Run every test, doc test and example of the workspace.
@@ -67,6 +81,9 @@ pub struct FiguresArgs {
     /// How much to compute.
     #[arg(long, value_enum, default_value_t = Quality::Draft)]
     pub quality: Quality,
+    /// Compute part I of N only and draw nothing; each part may run anywhere.
+    #[arg(long, value_name = "I/N")]
+    pub shard: Option<Shard>,
     #[command(flatten)]
     pub work: WorkArgs,
 }
@@ -89,6 +106,15 @@ pub struct RunArgs {
     /// Where to cut: `argmax`, `near-ties` or `all:K`; instead of the scene's own.
     #[arg(long, value_name = "CUTS")]
     pub cuts: Option<String>,
+    /// Keep the whole nematic field at each time looked at, for `export` (13 files a case; 3 MB each at R = 15).
+    #[arg(long)]
+    pub fields: bool,
+    /// Compute part I of N only; each part may run anywhere.
+    #[arg(long, value_name = "I/N")]
+    pub shard: Option<Shard>,
+    /// Seconds between checkpoints inside a nematic case.
+    #[arg(long, value_name = "SECONDS", default_value_t = 25.0)]
+    pub checkpoint: f64,
     #[command(flatten)]
     pub work: WorkArgs,
 }
@@ -105,6 +131,35 @@ pub struct WorkArgs {
     /// Compute everything anew.
     #[arg(long)]
     pub fresh: bool,
+}
+
+/// Options of `export`.
+#[derive(Debug, Args)]
+pub struct ExportArgs {
+    /// Folder of a case: the one that holds run.json.
+    pub case: PathBuf,
+    /// Where the files go; `export` inside the case's folder when left out.
+    #[arg(long, value_name = "DIR")]
+    pub to: Option<PathBuf>,
+    /// Which files.
+    #[arg(long, value_enum, default_value_t = ExportFormat::All)]
+    pub format: ExportFormat,
+    /// Micrometres that one correlation length stands for in the files for nemaktis.
+    #[arg(long, value_name = "UM", default_value_t = 0.006_63)]
+    pub micrometres: f64,
+}
+
+/// File formats of `export`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum ExportFormat {
+    /// VTK XML: .vtp, .vti, .vtu, with .pvd for time series.
+    Vtk,
+    /// One .npz a case, and one a field.
+    Npz,
+    /// .vti with the arrays n, Q and domain_mask, lengths in micrometres; needs fields.
+    Nemaktis,
+    /// All of them.
+    All,
 }
 
 /// Options of `compare`.

@@ -5,6 +5,7 @@ mod bench;
 mod cargo;
 mod ci;
 mod compare;
+mod export;
 mod figures;
 mod knot;
 mod packages;
@@ -23,6 +24,7 @@ pub fn dispatch(cli: Cli) -> Result<(), XtaskError> {
         Command::Run(args) => run::run(&args),
         Command::Accuracy(args) => accuracy::run(&args),
         Command::Compare(args) => compare::run(&args),
+        Command::Export(args) => export::run(&args),
         Command::Knot(args) => knot::run(&args),
         Command::Test(args) => test::run(&args),
         Command::Ci => ci::run(),
@@ -33,10 +35,10 @@ pub fn dispatch(cli: Cli) -> Result<(), XtaskError> {
 /// What the options of a computation ask for.
 fn settings(work: &WorkArgs) -> Result<SweepSettings, XtaskError> {
     Ok(SweepSettings {
-        out: work.out.clone(),
         jobs: threads(work.jobs)?,
         fresh: work.fresh,
         interrupt: interrupt::install(),
+        ..SweepSettings::new(&work.out)
     })
 }
 

@@ -1,5 +1,6 @@
 //! Where commands meet the physics: the tables behind figures, and a user's own scene.
 
+mod estimate;
 mod nematic;
 
 use crate::error::XtaskError;
@@ -11,12 +12,12 @@ use std::path::Path;
 use std::sync::OnceLock;
 use std::time::Instant;
 use topo_analysis::{
-    ACCURACY_CASES, AnalysisError, Cuts, ElasticScene, Event, NematicScene, Preset, Scene,
-    SweepReport, SweepSettings, measure_accuracy, quantile, run_sweep, tight_shapes, with_jobs,
-    write_knots, write_table,
+    ACCURACY_CASES, AnalysisError, Cuts, ElasticScene, Estimate, Event, NematicScene, Preset,
+    Scene, Shard, SweepReport, SweepSettings, measure_accuracy, quantile, run_sweep, tight_shapes,
+    with_jobs, write_knots, write_table,
 };
 use topo_core::Interrupt;
-use topo_knots::KnotTable;
+use topo_knots::{KnotTable, TightenSettings};
 
 /// The tables that figures need.
 #[derive(Debug)]
@@ -29,6 +30,8 @@ pub struct Order<'a> {
     pub jobs: usize,
     /// Recompute finished runs.
     pub fresh: bool,
+    /// The part of the cases computed here.
+    pub shard: Option<Shard>,
     /// Whether the elastic sweep is needed.
     pub elastic: bool,
     /// Whether the nematic sweep is needed.
@@ -58,18 +61,39 @@ pub fn tables(
     provenance
         .presets
         .insert("Seed".to_owned(), scene.seed.to_string());
+    let settings = SweepSettings {
+        jobs: order.jobs,
+        fresh: order.fresh,
+        interrupt: stop.clone(),
+        shard: order.shard,
+        ..SweepSettings::new(order.results)
+    };
+    topo_analysis::writable(order.results)?;
+    estimate::tell(&estimate::of_order(order, &settings)?);
     if order.knots {
         let start = Instant::now();
         let mut names: Vec<String> = scene.cases(&table)?.into_iter().map(|c| c.knot).collect();
         names.dedup();
-        let progress = Progress::start("knots", names.len());
+        // beyond draft the table goes on to eight crossings, at the resolution of the standard preset
+        let more: Vec<String> = if order.quality == Quality::Draft {
+            Vec::new()
+        } else {
+            let primes = table.primes_up_to(8).map(|k| k.name.clone());
+            primes.filter(|k| !names.contains(k)).collect()
+        };
+        let progress = Progress::start("knots", names.len() + more.len());
         let told = |event: Event<'_>| {
             if let Event::Knot { name, .. } = event {
                 progress.done(name);
             }
         };
         let shapes = with_jobs(order.jobs, || {
-            tight_shapes(&names, &table, &scene.tighten, order.results, stop, &told)
+            let mut shapes =
+                tight_shapes(&names, &table, &scene.tighten, order.results, stop, &told)?;
+            let standard = TightenSettings::standard();
+            let more = tight_shapes(&more, &table, &standard, order.results, stop, &told)?;
+            shapes.extend(more);
+            Ok::<_, AnalysisError>(shapes)
         })??;
         progress.finish();
         interrupt::check(stop)?;
@@ -78,33 +102,28 @@ pub fn tables(
             .wall_seconds
             .insert("knots".to_owned(), start.elapsed().as_secs_f64());
     }
-    let settings = SweepSettings {
-        out: order.results.to_owned(),
-        jobs: order.jobs,
-        fresh: order.fresh,
-        interrupt: stop.clone(),
-    };
     if order.elastic {
         let start = Instant::now();
         let report = sweep(&scene, &table, &settings)?;
+        provenance.estimated("elastic sweep", &report.estimate, report.wall_seconds);
         provenance
             .wall_seconds
             .insert("elastic sweep".to_owned(), start.elapsed().as_secs_f64());
         let runs = format!("{} computed, {} reused", report.n_computed, report.n_reused);
         provenance.presets.insert("Elastic runs".to_owned(), runs);
         let start = Instant::now();
-        for variant in scene.friction_variants() {
+        for variant in scene.variants() {
             sweep(&variant, &table, &settings)?;
         }
-        provenance.wall_seconds.insert(
-            "friction variants".to_owned(),
-            start.elapsed().as_secs_f64(),
-        );
+        provenance
+            .wall_seconds
+            .insert("variants".to_owned(), start.elapsed().as_secs_f64());
     }
     if order.nematic {
         let start = Instant::now();
         let scene = NematicScene::published(preset(order.quality));
         let report = nematic::sweep(&scene, &settings)?;
+        provenance.estimated("nematic sweep", &report.estimate, report.wall_seconds);
         let radius = format!("radius {} ξ_N", scene.nematic.radius);
         provenance.presets.insert("Colloid".to_owned(), radius);
         let runs = format!("{} computed, {} reused", report.n_computed, report.n_reused);
@@ -209,7 +228,9 @@ fn elastic_scene(
             remedy,
         })?;
     }
-    let report = sweep(&scene, &KnotTable::builtin(), settings)?;
+    let table = KnotTable::builtin();
+    tell_estimate(&topo_analysis::estimate_sweep(&scene, &table, settings)?);
+    let report = sweep(&scene, &table, settings)?;
     println!("knot    theta'h     cut    E/E0      Wr     t50     t90     t95     t99  untied");
     let cell = |t: Option<f64>| t.map_or_else(|| format!("{:>7}", "-"), |t| format!("{t:7.3}"));
     for r in &report.rows {
@@ -230,8 +251,28 @@ fn elastic_scene(
             println!("       warning: {warning}");
         }
     }
+    tell_taken(&report.estimate, report.wall_seconds);
     println!("written to {}", scene.results(&settings.out).display());
     Ok(())
+}
+
+/// Tells on the terminal what the cases left will take.
+fn tell_estimate(estimate: &Estimate) {
+    if estimate.n_cases > 0 {
+        eprintln!("estimate: {}", estimate::text(estimate));
+    }
+}
+
+/// Tells what they took.
+fn tell_taken(estimate: &Estimate, seconds: f64) {
+    if estimate.n_cases > 0 {
+        println!(
+            "{} cases in {}; estimated {}",
+            estimate.n_cases,
+            estimate::duration(seconds),
+            estimate::duration(estimate.wall_seconds)
+        );
+    }
 }
 
 fn sweep(
@@ -262,12 +303,29 @@ impl Teller {
     fn tell(&self, event: Event<'_>) {
         let progress = self.progress.get();
         match (event, progress) {
-            (Event::Begin { n_cases, n_reused }, _) => {
+            (
+                Event::Begin {
+                    n_cases, n_reused, ..
+                },
+                _,
+            ) => {
                 if n_reused > 0 {
                     eprintln!("{n_reused} of {n_cases} cases are finished already");
                 }
                 self.progress
                     .get_or_init(|| Progress::start(self.label, n_cases - n_reused));
+            }
+            (Event::Replaced { names, reason }, _) => {
+                let shown = names.iter().take(3).cloned().collect::<Vec<_>>().join(", ");
+                let more = if names.len() > 3 { ", ..." } else { "" };
+                let text = format!(
+                    "warning: computed again: {} of the earlier cases ({shown}{more}): {reason}",
+                    names.len()
+                );
+                match progress {
+                    Some(progress) => progress.note(&text),
+                    None => eprintln!("{text}"),
+                }
             }
             (Event::Working { name, what }, Some(progress)) => {
                 progress.working(&format!("{name}: {what}"));

@@ -4,7 +4,7 @@ mod elastic_charging;
 mod elastic_configurations;
 mod elastic_discharge;
 mod knots_table;
-mod nematic;
+pub mod nematic;
 pub mod series;
 #[cfg(test)]
 mod tests;

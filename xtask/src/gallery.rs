@@ -7,6 +7,7 @@ use crate::movies::Movie;
 use crate::plot::font;
 use crate::plot::text::escape;
 use crate::provenance::Provenance;
+use crate::reproduction::{self, Finding};
 use crate::viewer;
 use std::fmt::Write;
 use std::path::Path;
@@ -19,31 +20,53 @@ main{max-width:60rem;margin:0 auto;padding:1.5rem 1rem 4rem}h1{font-size:1.9rem;
 nav{display:flex;flex-wrap:wrap;gap:.3rem 1rem;margin:1rem 0 2rem}a{color:var(--link)}section{border-top:1px solid var(--line);padding:1.6rem 0}
 img{display:block;width:100%;height:auto;background:#fff;border:1px solid var(--line);border-radius:6px}
 dl{background:var(--card);border-radius:6px;padding:.8rem 1rem;margin:1rem 0}dt{font-weight:600}dd{margin:0 0 .6rem}dd:last-child{margin:0}
+.claims li{margin:0 0 1rem}.claims p{margin:.1rem 0}.claims b{border-radius:4px;padding:0 .4rem;font-weight:600;border:1px solid var(--line)}.confirmed{background:#cfe8ff;color:#123}.partly{background:#fff0c2;color:#321}.not-confirmed{background:#ffd9cf;color:#311}
 .files{color:var(--quiet)}table{border-collapse:collapse;display:block;overflow-x:auto}td{padding:.15rem .8rem .15rem 0;vertical-align:top;overflow-wrap:anywhere}td:first-child{white-space:nowrap;color:var(--quiet)}
 ";
 
 /// Writes `index.html` into the results folder: one file that opens from disk.
-pub fn write(
-    results: &Path,
-    done: &[&Done],
-    movies: &[(Movie, String)],
-    quality: Quality,
-    provenance: &Provenance,
-) -> Result<(), XtaskError> {
+pub fn write(results: &Path, shown: &Page<'_>) -> Result<(), XtaskError> {
     let view = viewer::sections(results)?;
     data::write(
         &results.join("index.html"),
-        page(done, movies, &view, quality, provenance).as_bytes(),
+        page(results, shown, &view).as_bytes(),
     )
 }
 
-fn page(
-    done: &[&Done],
-    movies: &[(Movie, String)],
-    view: &str,
-    quality: Quality,
-    provenance: &Provenance,
-) -> String {
+/// What the page shows.
+#[derive(Clone, Copy)]
+pub struct Page<'a> {
+    /// Figures, in order.
+    pub done: &'a [&'a Done],
+    /// Movies with what they show.
+    pub movies: &'a [(Movie, String)],
+    /// Claims with what was found.
+    pub claims: &'a [Finding],
+    /// How much was computed.
+    pub quality: Quality,
+    /// Where it comes from.
+    pub provenance: &'a Provenance,
+}
+
+/// Link to the scene of a battery's table, where it was written.
+fn scene_link(results: &Path, table: &str) -> String {
+    let battery = table.split('/').next().unwrap_or("");
+    let file = format!("scenes/{battery}.toml");
+    if results.join(&file).exists() {
+        format!(", <a href=\"{file}\">scene</a>")
+    } else {
+        String::new()
+    }
+}
+
+fn page(results: &Path, shown: &Page<'_>, view: &str) -> String {
+    let Page {
+        done,
+        movies,
+        claims,
+        quality,
+        provenance,
+    } = *shown;
     let mut html = format!(
         "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\
          <meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\
@@ -62,6 +85,9 @@ fn page(
                 format_args!("<a href=\"#view-{battery}\">{label}</a> "),
             );
         }
+    }
+    if !claims.is_empty() {
+        html.push_str("<a href=\"#claims\">Claim by claim</a> ");
     }
     for d in done {
         add(
@@ -89,7 +115,7 @@ fn page(
                  <a href=\"figures/{name}.svg\"><img alt=\"{alt}\" src=\"data:image/png;base64,{png}\"></a>\
                  <p>{caption}</p><dl><dt>Published claim</dt><dd>{claim}</dd><dt>Found here</dt><dd>{finding}</dd></dl>\
                  <p class=\"files\">Files: <a href=\"figures/{name}.svg\">SVG</a>, <a href=\"figures/{name}.png\">PNG</a>, \
-                 <a href=\"figures/{name}.csv\">numbers drawn</a>, <a href=\"{table}\">{table}</a></p></section>\n",
+                 <a href=\"figures/{name}.csv\">numbers drawn</a>, <a href=\"{table}\">{table}</a>{scene}</p></section>\n",
                 name = f.name,
                 title = escape(f.title),
                 alt = escape(f.caption),
@@ -98,6 +124,7 @@ fn page(
                 claim = escape(f.claim),
                 finding = escape(&d.finding),
                 table = f.table,
+                scene = scene_link(results, f.table),
             ),
         );
     }
@@ -107,16 +134,18 @@ fn page(
             format_args!(
                 "<section id=\"{name}\"><h2>{title}</h2><img alt=\"{alt}\" loading=\"lazy\" src=\"figures/{name}.png\">\
                  <p>{caption}</p><dl><dt>Published claim</dt><dd>{claim}</dd><dt>Found here</dt><dd>{finding}</dd></dl>\
-                 <p class=\"files\">File: <a href=\"figures/{name}.png\">animated PNG</a></p></section>\n",
+                 <p class=\"files\">File: <a href=\"figures/{name}.png\">animated PNG</a>{scene}</p></section>\n",
                 name = m.name,
                 title = escape(m.title),
                 alt = escape(m.caption),
                 caption = escape(m.caption),
                 claim = escape(m.claim),
                 finding = escape(finding),
+                scene = scene_link(results, m.battery),
             ),
         );
     }
+    html.push_str(&reproduction::section(claims));
     html.push_str(view);
     html.push_str("<section id=\"provenance\"><h2>Provenance</h2><table>");
     for (key, value) in provenance.rows() {

@@ -5,6 +5,7 @@ mod commands;
 mod compute;
 mod data;
 mod error;
+mod export;
 mod figures;
 mod gallery;
 mod interrupt;
@@ -12,6 +13,8 @@ mod movies;
 mod plot;
 mod progress;
 mod provenance;
+mod reproduction;
+mod scenes;
 #[cfg(test)]
 mod synthetic;
 mod viewer;

@@ -2,6 +2,7 @@
 
 mod apng;
 mod elastic;
+mod nematic;
 
 use crate::data;
 use crate::error::XtaskError;
@@ -54,11 +55,13 @@ pub struct Movie {
     pub caption: &'static str,
     /// What the published movie or figure claims.
     pub claim: &'static str,
+    /// Which battery.
+    pub battery: &'static str,
     clip: fn(&Stage<'_>) -> Result<Clip, XtaskError>,
 }
 
 /// Every movie, in the order of the gallery.
-pub const ALL: [Movie; 1] = [elastic::MOVIE];
+pub const ALL: [Movie; 2] = [elastic::MOVIE, nematic::MOVIE];
 
 /// Draws a movie, writes `figures/NAME.png`, and returns what it shows in numbers.
 pub fn draw(movie: Movie, stage: &Stage<'_>) -> Result<String, XtaskError> {

@@ -7,6 +7,7 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use topo_analysis::Estimate;
 
 /// Where figures come from.
 #[derive(Debug, Serialize)]
@@ -23,10 +24,21 @@ pub struct Provenance {
     pub presets: BTreeMap<String, String>,
     /// Wall seconds by stage.
     pub wall_seconds: BTreeMap<String, f64>,
+    /// What sweeps were expected to take and took, of those that computed anything.
+    pub estimates: BTreeMap<String, Expected>,
     /// What the numbers of each figure say.
     pub findings: BTreeMap<String, String>,
     /// Warnings of the runs, each with the number of runs that gave it.
     pub warnings: BTreeMap<String, usize>,
+}
+
+/// An estimate beside the time that was taken.
+#[derive(Debug, Serialize)]
+pub struct Expected {
+    /// What was expected.
+    pub estimate: Estimate,
+    /// Seconds that it took.
+    pub wall_seconds: f64,
 }
 
 impl Provenance {
@@ -43,6 +55,7 @@ impl Provenance {
             quality,
             presets: BTreeMap::new(),
             wall_seconds: BTreeMap::new(),
+            estimates: BTreeMap::new(),
             findings: BTreeMap::new(),
             warnings: BTreeMap::new(),
         }
@@ -54,6 +67,17 @@ impl Provenance {
             let name = d.figure.name;
             self.wall_seconds.insert(format!("draw {name}"), d.seconds);
             self.findings.insert(name.to_owned(), d.finding.clone());
+        }
+    }
+
+    /// Notes what a sweep was expected to take and took.
+    pub fn estimated(&mut self, stage: &str, estimate: &Estimate, wall_seconds: f64) {
+        if estimate.n_cases > 0 {
+            let expected = Expected {
+                estimate: *estimate,
+                wall_seconds,
+            };
+            self.estimates.insert(stage.to_owned(), expected);
         }
     }
 
@@ -81,6 +105,15 @@ impl Provenance {
         ];
         rows.extend(self.presets.iter().map(|(k, v)| (k.as_str(), v.clone())));
         rows.push(("Wall time", format!("{wall:.1} s")));
+        if !self.estimates.is_empty() {
+            let each = self.estimates.iter().map(|(stage, e)| {
+                format!(
+                    "{stage}: {} cases in {:.0} s, estimated {:.0} s",
+                    e.estimate.n_cases, e.wall_seconds, e.estimate.wall_seconds
+                )
+            });
+            rows.push(("Estimates", each.collect::<Vec<_>>().join("; ")));
+        }
         rows.push(("Warnings", warnings));
         rows
     }

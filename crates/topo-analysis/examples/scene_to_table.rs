@@ -7,7 +7,6 @@
 use std::path::{Path, PathBuf};
 
 use topo_analysis::{ElasticScene, Event, SweepSettings, run_sweep};
-use topo_core::Interrupt;
 use topo_knots::KnotTable;
 
 const SCENE: &str = r#"
@@ -31,12 +30,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let out = arguments
         .next()
         .map_or(folder.path().to_owned(), PathBuf::from);
-    let settings = SweepSettings {
-        out,
-        jobs: 0,
-        fresh: false,
-        interrupt: Interrupt::new(),
-    };
+    let settings = SweepSettings::new(&out);
     let report = run_sweep(&scene, &KnotTable::builtin(), &settings, &|event| {
         if let Event::Case {
             name,

@@ -18,4 +18,4 @@ pub use frames::{ShapeFrame, discharge_frames};
 pub use imperfection::perturbed;
 pub use resonance::{Ensemble, Regime, Resonance, crossover, ensembles, regime, resonances};
 pub use scene::{ElasticCase, ElasticScene};
-pub use sweep::{SweepReport, run_sweep};
+pub use sweep::{SweepReport, estimate_sweep, run_sweep};

@@ -1,11 +1,13 @@
 //! Folders of results: whether they can be written, and which case they hold.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 
 use crate::AnalysisError;
+use crate::progress::Event;
 
 /// Makes a folder and those above it.
 pub(crate) fn make_folder(folder: &Path) -> Result<(), AnalysisError> {
@@ -28,11 +30,22 @@ pub fn writable(folder: &Path) -> Result<(), AnalysisError> {
     tempfile::tempfile_in(folder).map(drop).map_err(wrong)
 }
 
-/// What a later run needs to know of a finished case.
+/// What tells whether a finished case can be used.
+#[derive(Deserialize)]
+struct CaseMark {
+    fingerprint: String,
+    versions: Option<Versions>,
+}
+
+#[derive(Deserialize)]
+struct Versions {
+    results: u32,
+}
+
+/// The rows of a finished case.
 #[derive(Deserialize)]
 #[serde(bound = "T: DeserializeOwned")]
 struct CaseSummary<T> {
-    fingerprint: String,
     rows: Vec<T>,
 }
 
@@ -41,19 +54,86 @@ pub(crate) fn identity(all: &serde_json::Value) -> String {
     blake3::hash(all.to_string().as_bytes()).to_hex()[..16].to_owned()
 }
 
-/// Rows of the finished case in `folder`, if it is there and of the same identity.
-pub(crate) fn finished<T: DeserializeOwned>(folder: &Path, fingerprint: &str) -> Option<Vec<T>> {
-    let text = std::fs::read_to_string(folder.join("run.json")).ok()?;
-    let summary: CaseSummary<T> = match serde_json::from_str(&text) {
-        Ok(summary) => summary,
-        Err(error) => {
-            tracing::warn!(folder = %folder.display(), %error, "run.json is not readable: the case is computed again");
-            return None;
-        }
-    };
-    if summary.fingerprint != fingerprint {
-        tracing::info!(folder = %folder.display(), "the case was computed with other settings: it is computed again");
-        return None;
+/// What an earlier run left of a case.
+#[derive(Debug, Clone)]
+pub(crate) enum Earlier<T> {
+    /// Nothing, or nothing that is finished.
+    None,
+    /// Its rows, of the same settings and version.
+    Finished(Vec<T>),
+    /// Something that cannot be used, and why.
+    Unusable(&'static str),
+}
+
+impl<T> Earlier<T> {
+    /// Whether it need not be computed.
+    pub(crate) fn is_finished(&self) -> bool {
+        matches!(self, Self::Finished(_))
     }
-    Some(summary.rows)
+
+    /// Why what is there cannot be used.
+    pub(crate) fn reason(&self) -> Option<&'static str> {
+        match self {
+            Self::Unusable(reason) => Some(reason),
+            _ => None,
+        }
+    }
+
+    /// The rows of a finished case.
+    pub(crate) fn rows(self) -> Option<Vec<T>> {
+        match self {
+            Self::Finished(rows) => Some(rows),
+            _ => None,
+        }
+    }
+}
+
+const CORRUPT: &str = "its run.json is damaged";
+const OTHER_VERSION: &str = "it is of another results version";
+const OTHER_SETTINGS: &str = "it was computed with other settings";
+const NO_ROWS: &str = "its run.json has no rows";
+
+/// What is left of a case in `folder`; usable only with the same identity.
+///
+/// `version` is the results version of now; a file of another one is told apart from one of other settings.
+pub(crate) fn finished<T: DeserializeOwned>(
+    folder: &Path,
+    fingerprint: &str,
+    version: u32,
+) -> Earlier<T> {
+    let text = match std::fs::read_to_string(folder.join("run.json")) {
+        Ok(text) => text,
+        Err(e) if e.kind() == std::io::ErrorKind::NotFound => return Earlier::None,
+        Err(_) => return Earlier::Unusable(CORRUPT),
+    };
+    let Ok(mark) = serde_json::from_str::<CaseMark>(&text) else {
+        return Earlier::Unusable(CORRUPT);
+    };
+    if mark.versions.is_some_and(|v| v.results != version) {
+        return Earlier::Unusable(OTHER_VERSION);
+    }
+    if mark.fingerprint != fingerprint {
+        return Earlier::Unusable(OTHER_SETTINGS);
+    }
+    match serde_json::from_str::<CaseSummary<T>>(&text) {
+        Ok(summary) if !summary.rows.is_empty() => Earlier::Finished(summary.rows),
+        Ok(_) => Earlier::Unusable(NO_ROWS),
+        Err(_) => Earlier::Unusable(CORRUPT),
+    }
+}
+
+/// Tells which cases of an earlier run are computed again and why, one word a reason.
+pub(crate) fn tell_replaced(
+    cases: impl Iterator<Item = (String, Option<&'static str>)>,
+    progress: &(dyn Fn(Event<'_>) + Sync),
+) {
+    let mut by_reason: BTreeMap<&'static str, Vec<String>> = BTreeMap::new();
+    for (name, reason) in cases {
+        if let Some(reason) = reason {
+            by_reason.entry(reason).or_default().push(name);
+        }
+    }
+    for (reason, names) in &by_reason {
+        progress(Event::Replaced { names, reason });
+    }
 }

@@ -69,7 +69,14 @@ pub fn write_knots(
     let folder = knots_folder(out);
     make_folder(&folder)?;
     let mut rows = Vec::new();
-    for (name, tight) in shapes {
+    // by crossings and then by number: 8_2 before 8_10
+    let place = |name: &str| -> Option<(u32, u32)> {
+        let (crossings, number) = name.split_once('_')?;
+        Some((crossings.parse().ok()?, number.parse().ok()?))
+    };
+    let mut ordered: Vec<_> = shapes.iter().collect();
+    ordered.sort_by_key(|(name, _)| (place(name).is_none(), place(name)));
+    for (name, tight) in ordered {
         let reference = table.get(name)?.length_over_radius;
         let certificate = &tight.certificate;
         rows.push(KnotRow {

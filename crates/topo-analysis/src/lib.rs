@@ -7,6 +7,7 @@
 //! Elastic energies are in E_0 = E_b h² L and times in T_0 = 2 L η/(h E_b), with L the row's own length; nematic energies in
 //! L ξ_N and times in τ_N.
 
+mod cost;
 mod elastic;
 mod error;
 mod folder;
@@ -19,21 +20,22 @@ mod table;
 mod timeline;
 mod times;
 
+pub use cost::Estimate;
 pub use elastic::{
     ACCURACY_CASES, AccuracyRow, Cuts, ElasticCase, ElasticScene, Ensemble, NEAR_TIE, Names,
     Numbers, Preset, RESULTS_VERSION, Regime, Resonance, ShapeFrame, SweepReport, crossover,
-    discharge_frames, ensembles, measure_accuracy, perturbed, reference_scene, regime, resonances,
-    run_sweep,
+    discharge_frames, ensembles, estimate_sweep, measure_accuracy, perturbed, reference_scene,
+    regime, resonances, run_sweep,
 };
 pub use error::AnalysisError;
 pub use folder::writable;
 pub use knots::{Shapes, knots_folder, tight_shapes, write_knots};
 pub use nematic::{
-    LinePoint, NEMATIC_SHARES, NematicCase, NematicReport, NematicResonance, NematicRow,
-    NematicSample, NematicScene, SlicePoint, buckling, nematic_resonance, resonance_peak,
-    run_nematic_sweep,
+    FieldSnapshot, LinePoint, NEMATIC_SHARES, NematicCase, NematicFrame, NematicReport,
+    NematicResonance, NematicRow, NematicSample, NematicScene, SlicePoint, buckling,
+    estimate_nematic_sweep, nematic_frames, nematic_resonance, resonance_peak, run_nematic_sweep,
 };
-pub use progress::{Event, SweepSettings, with_jobs};
+pub use progress::{Event, Shard, SweepSettings, with_jobs};
 pub use scene::Scene;
 pub use statistics::{Spread, median, quantile};
 pub use table::{KnotRow, SweepRow, read_table, write_table};

@@ -1,7 +1,9 @@
 //! Nematic scenes: colloids, charged, switched and followed; their tables and what these say.
 
 mod case;
+mod field;
 mod file;
+mod frames;
 mod late;
 mod resonance;
 mod scene;
@@ -10,7 +12,9 @@ mod sweep;
 mod table;
 
 pub use case::NEMATIC_SHARES;
+pub use field::FieldSnapshot;
+pub use frames::{NematicFrame, nematic_frames};
 pub use resonance::{NematicResonance, buckling, nematic_resonance, resonance_peak};
 pub use scene::{NematicCase, NematicScene};
-pub use sweep::{NematicReport, run_nematic_sweep};
+pub use sweep::{NematicReport, estimate_nematic_sweep, run_nematic_sweep};
 pub use table::{LinePoint, NematicRow, NematicSample, SlicePoint};

@@ -10,6 +10,7 @@ use crate::interrupt;
 use crate::movies::{self, Movie};
 use crate::progress::Progress;
 use crate::provenance::{self, Provenance, workspace};
+use crate::{reproduction, scenes};
 use std::time::Instant;
 
 pub fn run(args: &FiguresArgs) -> Result<(), XtaskError> {
@@ -24,11 +25,19 @@ pub fn run(args: &FiguresArgs) -> Result<(), XtaskError> {
         quality: args.quality,
         jobs,
         fresh: args.work.fresh,
+        shard: args.shard,
         elastic: chosen.iter().any(|f| f.table.starts_with("elastic/")),
         nematic: chosen.iter().any(|f| f.table.starts_with("nematic/")),
         knots: chosen.iter().any(|f| f.table.starts_with("knots/")),
     };
     compute::tables(&order, &interrupt, &mut record)?;
+    if let Some(shard) = args.shard {
+        println!(
+            "part {shard} is computed; put the case folders of all parts below one folder and run \
+             the command without --shard to draw"
+        );
+        return Ok(());
+    }
 
     let context = Context {
         results,
@@ -99,7 +108,17 @@ pub fn run(args: &FiguresArgs) -> Result<(), XtaskError> {
         rows.for_each(|r| record.warn(&r.warnings));
     }
     record.write(results)?;
-    gallery::write(results, &shown, &shown_movies, args.quality, &record)?;
+    let claims = reproduction::findings(results)?;
+    reproduction::write(results, args.quality, &claims)?;
+    scenes::write(results, args.quality)?;
+    let page = gallery::Page {
+        done: &shown,
+        movies: &shown_movies,
+        claims: &claims,
+        quality: args.quality,
+        provenance: &record,
+    };
+    gallery::write(results, &page)?;
     for d in &done[..n_drawn] {
         println!("{}: {}", d.figure.name, d.finding);
     }

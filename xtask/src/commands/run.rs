@@ -3,8 +3,21 @@
 use crate::cli::RunArgs;
 use crate::compute;
 use crate::error::XtaskError;
+use topo_analysis::SweepSettings;
 
 pub fn run(args: &RunArgs) -> Result<(), XtaskError> {
-    let settings = super::settings(&args.work)?;
+    if !(args.checkpoint.is_finite() && args.checkpoint >= 0.0) {
+        return Err(XtaskError::Argument {
+            key: "--checkpoint",
+            value: args.checkpoint.to_string(),
+            remedy: "seconds are needed, such as 25".to_owned(),
+        });
+    }
+    let settings = SweepSettings {
+        checkpoint_seconds: args.checkpoint,
+        shard: args.shard,
+        keep_fields: args.fields,
+        ..super::settings(&args.work)?
+    };
     compute::scene(&args.scene, args.cuts.as_deref(), &settings)
 }

@@ -3,11 +3,13 @@
 use super::Teller;
 use crate::error::XtaskError;
 use topo_analysis::{
-    NematicReport, NematicScene, SweepSettings, nematic_resonance, run_nematic_sweep,
+    NematicReport, NematicScene, SweepSettings, estimate_nematic_sweep, nematic_resonance,
+    run_nematic_sweep,
 };
 
 /// Runs a user's scene and prints its table.
 pub fn scene(scene: &NematicScene, settings: &SweepSettings) -> Result<(), XtaskError> {
+    super::tell_estimate(&estimate_nematic_sweep(scene, settings)?);
     let report = sweep(scene, settings)?;
     println!(
         "  q flow  F charged  F after  order  ring/R mode     t50     t90     t99   t99.9  CPU s   MB"
@@ -59,6 +61,7 @@ pub fn scene(scene: &NematicScene, settings: &SweepSettings) -> Result<(), Xtask
             );
         }
     }
+    super::tell_taken(&report.estimate, report.wall_seconds);
     println!("written to {}", scene.results(&settings.out).display());
     Ok(())
 }

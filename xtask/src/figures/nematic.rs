@@ -2,7 +2,7 @@
 
 pub mod charging;
 pub mod discharge;
-mod slice;
+pub mod slice;
 
 use super::Quality;
 use super::series::step;
@@ -41,10 +41,25 @@ pub fn colloid(
     slice: Option<&Slice>,
     height: f64,
 ) -> Solids<'static> {
+    let charged: Vec<&DefectLine> = lines.iter().filter(|l| l.time.is_none()).collect();
+    colloid_at(radius, Some(q), &charged, slice, [-90.0, height])
+}
+
+/// The colloid at one time, seen from an azimuth and a height; without `q` its anchoring is off and it is grey.
+pub fn colloid_at(
+    radius: f64,
+    q: Option<u32>,
+    lines: &[&DefectLine],
+    slice: Option<&Slice>,
+    [azimuth, height]: [f64; 2],
+) -> Solids<'static> {
     let mut solids = Solids::default();
-    particle(&mut solids, radius, q);
+    match q {
+        Some(q) => particle(&mut solids, radius, q),
+        None => solids.sphere(Vector3::zeros(), radius, [205, 209, 214]),
+    }
     let scale = profile_scale();
-    for line in lines.iter().filter(|l| l.time.is_none()) {
+    for line in lines {
         let colors: Vec<Rgb> = line
             .angles
             .iter()
@@ -55,7 +70,7 @@ pub fn colloid(
     if let Some(slice) = slice {
         rods(&mut solids, slice, radius);
     }
-    solids.turned(&view(-90.0, height))
+    solids.turned(&view(azimuth, height))
 }
 
 /// Director rods of a slice, thinned to about 28 along the wider side.

@@ -1,7 +1,7 @@
 //! Every figure drawn from made-up results.
 
 use super::*;
-use crate::{gallery, provenance, synthetic};
+use crate::{gallery, provenance, reproduction, scenes, synthetic};
 
 fn context(results: &Path) -> Context<'_> {
     Context {
@@ -52,14 +52,16 @@ fn every_figure_is_drawn_with_its_files_and_told_in_the_gallery() {
     p.drew(&done);
     p.warn("slow; slow");
     p.write(dir.path()).unwrap();
-    gallery::write(
-        dir.path(),
-        &done.iter().collect::<Vec<_>>(),
-        &[],
-        Quality::Draft,
-        &p,
-    )
-    .unwrap();
+    let claims = reproduction::findings(dir.path()).unwrap();
+    scenes::write(dir.path(), Quality::Draft).unwrap();
+    let page = gallery::Page {
+        done: &done.iter().collect::<Vec<_>>(),
+        movies: &[],
+        claims: &claims,
+        quality: Quality::Draft,
+        provenance: &p,
+    };
+    gallery::write(dir.path(), &page).unwrap();
     let again = kept(ALL[0], dir.path(), done[0].finding.clone()).unwrap();
     assert!(again.preview == done[0].preview);
     let found = provenance::earlier_findings(dir.path());
@@ -72,7 +74,8 @@ fn every_figure_is_drawn_with_its_files_and_told_in_the_gallery() {
     for figure in ALL {
         assert!(page.contains(&format!("id=\"{}\"", figure.name)));
     }
-    assert!(page.contains("slow (2)"));
+    assert!(page.contains("slow (2)") && page.contains("id=\"claims\""));
+    assert!(page.contains("scenes/elastic.toml") && page.contains("scenes/nematic.toml"));
     assert!(!page.contains("src=\"http") && !page.contains("href=\"http"));
 }
 
@@ -156,12 +159,12 @@ fn look() {
     let mut p = provenance::Provenance::collect(&provenance::workspace(), Quality::Draft);
     p.drew(&done);
     p.write(results).unwrap();
-    gallery::write(
-        results,
-        &done.iter().collect::<Vec<_>>(),
-        &[],
-        Quality::Draft,
-        &p,
-    )
-    .unwrap();
+    let page = gallery::Page {
+        done: &done.iter().collect::<Vec<_>>(),
+        movies: &[],
+        claims: &reproduction::findings(results).unwrap(),
+        quality: Quality::Draft,
+        provenance: &p,
+    };
+    gallery::write(results, &page).unwrap();
 }

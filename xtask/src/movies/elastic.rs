@@ -19,6 +19,7 @@ pub const MOVIE: Movie = Movie {
     caption: "Four charged knots after the cut, coloured by energy density, with their elastic \
               energy; time runs logarithmically, the same for all.",
     claim: "The relaxation dynamics depend strongly on knot type and twist.",
+    battery: "elastic",
     clip,
 };
 

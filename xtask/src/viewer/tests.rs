@@ -1,7 +1,7 @@
 //! The page in a browser, where there is one.
 
 use crate::figures::{self, Context, Quality};
-use crate::{gallery, provenance, synthetic};
+use crate::{gallery, provenance, reproduction, synthetic};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -62,7 +62,15 @@ fn page(folder: &Path) -> PathBuf {
     };
     let done = figures::draw(figures::ALL[0], &context).unwrap();
     let p = provenance::Provenance::collect(&provenance::workspace(), Quality::Draft);
-    gallery::write(folder, &[&done], &[], Quality::Draft, &p).unwrap();
+    let claims = reproduction::findings(folder).unwrap();
+    let shown = gallery::Page {
+        done: &[&done],
+        movies: &[],
+        claims: &claims,
+        quality: Quality::Draft,
+        provenance: &p,
+    };
+    gallery::write(folder, &shown).unwrap();
     let text = std::fs::read_to_string(folder.join("index.html")).unwrap();
     assert!(!text.contains("src=\"http") && !text.contains("href=\"http"));
     let probed = folder.join("probed.html");

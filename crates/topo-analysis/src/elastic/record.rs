@@ -44,6 +44,7 @@ struct SnapshotVertex {
     y: f64,
     z: f64,
     energy_density: f64,
+    twist: f64,
 }
 
 /// The open or closed rod at an output time.
@@ -199,6 +200,7 @@ pub(super) fn write_case(made: &MadeCase<'_>, folder: &Path) -> Result<(), Analy
                         y: x.y,
                         z: x.z,
                         energy_density: density[i] * area,
+                        twist: state.twists()[i] / state.rest_length(),
                     }),
             );
         }

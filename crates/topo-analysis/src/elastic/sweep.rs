@@ -5,10 +5,12 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use rayon::prelude::*;
 use topo_knots::KnotTable;
 
-use super::case::{self, CaseJob, fingerprint};
-use super::scene::ElasticScene;
+use super::case::{self, CaseJob, RESULTS_VERSION, fingerprint};
+use super::choices::Cuts;
+use super::scene::{ElasticCase, ElasticScene};
 use crate::AnalysisError;
-use crate::folder::{finished, writable};
+use crate::cost::{Cost, Estimate, Speed, Stopwatch, estimate, threads};
+use crate::folder::{Earlier, finished, tell_replaced, writable};
 use crate::knots::{Shapes, tight_shapes};
 use crate::progress::{Event, SweepSettings, with_jobs};
 use crate::table::{SweepRow, write_table};
@@ -26,6 +28,10 @@ pub struct SweepReport {
     pub interrupted: bool,
     /// Tight shapes it started from.
     pub shapes: Shapes,
+    /// What it was expected to take.
+    pub estimate: Estimate,
+    /// Seconds that its cases took, the start shapes not counted.
+    pub wall_seconds: f64,
 }
 
 /// Runs all cases of a scene; what an earlier run finished with the same settings is kept.
@@ -44,83 +50,80 @@ pub fn run_sweep(
 ) -> Result<SweepReport, AnalysisError> {
     let folder = scene.results(&settings.out);
     writable(&folder)?;
-    let cases = scene.cases(table)?;
-    let mut found = Vec::with_capacity(cases.len());
-    for case in &cases {
-        let entry = table.get(&case.knot)?;
-        let mark = fingerprint(scene, case, entry);
-        found.push(if settings.fresh {
-            None
-        } else {
-            finished(&folder.join(case.name()), &mark)
-        });
-    }
-    let n_reused = found.iter().filter(|f| f.is_some()).count();
+    let Plan { cases, found, todo } = plan(scene, table, settings)?;
+    let estimate = cost(scene, settings, &cases, &found, &todo);
+    let n_reused = found.iter().filter(|f| f.is_finished()).count();
+    let n_todo = estimate.n_cases;
     progress(Event::Begin {
-        n_cases: cases.len(),
+        n_cases: n_todo + n_reused,
         n_reused,
+        estimate: &estimate,
     });
+    let names_of = cases.iter().map(ElasticCase::name);
+    tell_replaced(names_of.zip(found.iter().map(Earlier::reason)), progress);
     let mut names: Vec<String> = cases
         .iter()
-        .zip(&found)
-        .filter(|(_, f)| f.is_none())
+        .zip(&todo)
+        .filter(|(_, todo)| **todo)
         .map(|(c, _)| c.knot.clone())
         .collect();
     names.dedup();
     names.sort();
     names.dedup();
     let n_done = AtomicUsize::new(n_reused);
-    let (shapes, computed) = with_jobs(settings.jobs, || -> Result<_, AnalysisError> {
-        let shapes = tight_shapes(
-            &names,
-            table,
-            &scene.tighten,
-            &settings.out,
-            &settings.interrupt,
-            progress,
-        )?;
-        let computed: Vec<Option<Vec<SweepRow>>> = cases
-            .par_iter()
-            .zip(&found)
-            .with_max_len(1)
-            .map(|(case, found)| {
-                if found.is_some() || settings.interrupt.is_requested() {
-                    return Ok(None);
-                }
-                let Some(tight) = shapes.get(&case.knot) else {
-                    return Ok(None);
-                };
-                let job = CaseJob {
-                    scene,
-                    case,
-                    tight,
-                    table,
-                };
-                let rows = case::run(&job, &folder.join(case.name()), &settings.interrupt)?;
-                if let Some(rows) = &rows {
-                    let n_done = n_done.fetch_add(1, Ordering::Relaxed) + 1;
-                    let warnings: Vec<&str> = rows
-                        .iter()
-                        .map(|r| r.warnings.as_str())
-                        .filter(|w| !w.is_empty())
-                        .collect();
-                    progress(Event::Case {
-                        name: &case.name(),
-                        n_done,
-                        warnings: &warnings.join(";"),
-                    });
-                }
-                Ok(rows)
-            })
-            .collect::<Result<_, AnalysisError>>()?;
-        Ok((shapes, computed))
-    })??;
+    let (shapes, computed, wall_seconds) =
+        with_jobs(settings.jobs, || -> Result<_, AnalysisError> {
+            let shapes = tight_shapes(
+                &names,
+                table,
+                &scene.tighten,
+                &settings.out,
+                &settings.interrupt,
+                progress,
+            )?;
+            let clock = Stopwatch::start();
+            let computed: Vec<Option<Vec<SweepRow>>> = cases
+                .par_iter()
+                .zip(&todo)
+                .with_max_len(1)
+                .map(|(case, todo)| {
+                    if !todo || settings.interrupt.is_requested() {
+                        return Ok(None);
+                    }
+                    let Some(tight) = shapes.get(&case.knot) else {
+                        return Ok(None);
+                    };
+                    let job = CaseJob {
+                        scene,
+                        case,
+                        tight,
+                        table,
+                    };
+                    let rows = case::run(&job, &folder.join(case.name()), &settings.interrupt)?;
+                    if let Some(rows) = &rows {
+                        let n_done = n_done.fetch_add(1, Ordering::Relaxed) + 1;
+                        let warnings: Vec<&str> = rows
+                            .iter()
+                            .map(|r| r.warnings.as_str())
+                            .filter(|w| !w.is_empty())
+                            .collect();
+                        progress(Event::Case {
+                            name: &case.name(),
+                            n_done,
+                            warnings: &warnings.join(";"),
+                        });
+                    }
+                    Ok(rows)
+                })
+                .collect::<Result<_, AnalysisError>>()?;
+            Ok((shapes, computed, clock.seconds()))
+        })??;
     let n_computed = computed.iter().filter(|c| c.is_some()).count();
-    let interrupted = settings.interrupt.is_requested() && n_computed + n_reused < cases.len();
+    let interrupted = settings.interrupt.is_requested() && n_computed < n_todo;
     let rows: Vec<SweepRow> = found
         .into_iter()
         .zip(computed)
-        .filter_map(|(f, c)| f.or(c))
+        .filter_map(|(f, c)| f.rows().or(c))
         .flatten()
         .collect();
     write_table(&folder.join("sweep.csv"), &rows)?;
@@ -130,14 +133,109 @@ pub fn run_sweep(
         n_reused,
         interrupted,
         shapes,
+        estimate,
+        wall_seconds,
     })
 }
+
+/// What [`run_sweep`] is expected to take for what is not finished, the start shapes not counted.
+///
+/// # Errors
+/// An unknown knot.
+pub fn estimate_sweep(
+    scene: &ElasticScene,
+    table: &KnotTable,
+    settings: &SweepSettings,
+) -> Result<Estimate, AnalysisError> {
+    let Plan { cases, found, todo } = plan(scene, table, settings)?;
+    Ok(cost(scene, settings, &cases, &found, &todo))
+}
+
+/// The cases of a scene, what is left of them, and which are computed now.
+struct Plan {
+    cases: Vec<ElasticCase>,
+    found: Vec<Earlier<SweepRow>>,
+    todo: Vec<bool>,
+}
+
+fn plan(
+    scene: &ElasticScene,
+    table: &KnotTable,
+    settings: &SweepSettings,
+) -> Result<Plan, AnalysisError> {
+    let folder = scene.results(&settings.out);
+    let cases = scene.cases(table)?;
+    let mut found = Vec::with_capacity(cases.len());
+    for (k, case) in cases.iter().enumerate() {
+        let entry = table.get(&case.knot)?;
+        let mark = fingerprint(scene, case, entry);
+        found.push(if settings.fresh && settings.takes(k) {
+            Earlier::None
+        } else {
+            finished(&folder.join(case.name()), &mark, RESULTS_VERSION)
+        });
+    }
+    let todo = (0..cases.len())
+        .map(|k| !found[k].is_finished() && settings.takes(k))
+        .collect();
+    Ok(Plan { cases, found, todo })
+}
+
+fn cost(
+    scene: &ElasticScene,
+    settings: &SweepSettings,
+    cases: &[ElasticCase],
+    found: &[Earlier<SweepRow>],
+    todo: &[bool],
+) -> Estimate {
+    let taken: Vec<(f64, f64)> = found
+        .iter()
+        .filter_map(|f| match f {
+            Earlier::Finished(rows) => Some((
+                case_cost(scene, Some(rows.len())).seconds,
+                rows.iter().map(|r| r.cpu_seconds).sum(),
+            )),
+            _ => None,
+        })
+        .collect();
+    let costs = vec![case_cost(scene, None); todo.iter().filter(|t| **t).count()];
+    debug_assert_eq!(cases.len(), todo.len());
+    estimate(&costs, Speed::of(&taken), threads(settings.jobs), true)
+}
+
+/// Cost of a charge with its discharges, as measured over the published knots and twists.
+fn case_cost(scene: &ElasticScene, n_cuts: Option<usize>) -> Cost {
+    let edges = scene.rod.n_edges as f64 / 200.0;
+    let tolerance = (1e-3 / scene.accuracy.tolerance.max(1e-9)).max(1e-3);
+    let n_cuts = match (n_cuts, scene.cuts) {
+        (Some(n), _) => n as f64,
+        (None, Cuts::Argmax) => 1.0,
+        (None, Cuts::NearTies) => MEAN_NEAR_TIES,
+        (None, Cuts::All(k)) => k as f64,
+    };
+    let one = edges.powf(EDGES_POWER) * tolerance.powf(TOLERANCE_POWER);
+    Cost {
+        seconds: one * (CHARGE_SECONDS + n_cuts * DISCHARGE_SECONDS),
+        bytes: (BYTES * edges) as u64,
+    }
+}
+
+/// Processor seconds of a charge at N = 200 and tolerance 1e-3 h.
+const CHARGE_SECONDS: f64 = 0.35;
+/// The same of a discharge.
+const DISCHARGE_SECONDS: f64 = 0.50;
+/// Growth with the number of edges.
+const EDGES_POWER: f64 = 1.3;
+/// Growth with the inverse of the tolerance.
+const TOLERANCE_POWER: f64 = 0.5;
+/// Near-tied cuts of a case, on average over the published sweep.
+const MEAN_NEAR_TIES: f64 = 3.0;
+/// Bytes that a case holds at N = 200.
+const BYTES: f64 = 6e7;
 
 #[cfg(test)]
 mod tests {
     use std::path::Path;
-
-    use topo_core::Interrupt;
 
     use super::*;
 
@@ -145,10 +243,8 @@ mod tests {
 
     fn settings(out: &Path, jobs: usize) -> SweepSettings {
         SweepSettings {
-            out: out.to_owned(),
             jobs,
-            fresh: false,
-            interrupt: Interrupt::new(),
+            ..SweepSettings::new(out)
         }
     }
 
@@ -186,6 +282,107 @@ mod tests {
         other.accuracy.tolerance = 2e-2;
         let changed = run_sweep(&other, &table, &settings(folder.path(), 0), &|_| {}).unwrap();
         assert_eq!(changed.n_computed, 2);
+    }
+
+    #[test]
+    fn what_an_earlier_run_left_is_told_apart_and_computed_again() {
+        let table = KnotTable::builtin();
+        let scene = ElasticScene::parse(SCENE, Path::new("scene.toml")).unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let sweep = |scene: &ElasticScene| {
+            let told = std::sync::Mutex::new(Vec::new());
+            let report = run_sweep(scene, &table, &settings(folder.path(), 1), &|event| {
+                if let Event::Replaced { names, reason } = event {
+                    told.lock().unwrap().push((reason.to_owned(), names.len()));
+                }
+            })
+            .unwrap();
+            (timeless(&report), told.into_inner().unwrap())
+        };
+        let (first, told) = sweep(&scene);
+        assert!(told.is_empty());
+        let case = folder.path().join("elastic/3_1_twist+0.00_shrunk_n60");
+        let mark = case.join("run.json");
+        let text = std::fs::read_to_string(&mark).unwrap();
+        let version = format!("\"results\": {RESULTS_VERSION}");
+        assert!(text.contains(&version));
+        let rows_gone: serde_json::Value = {
+            let mut run: serde_json::Value = serde_json::from_str(&text).unwrap();
+            run["rows"] = serde_json::json!([]);
+            run
+        };
+        for (left, reason) in [
+            (text[..text.len() / 2].to_owned(), "damaged"),
+            (
+                text.replace(&version, "\"results\": 999"),
+                "another results version",
+            ),
+            (rows_gone.to_string(), "no rows"),
+        ] {
+            std::fs::write(&mark, left).unwrap();
+            let (rows, told) = sweep(&scene);
+            assert_eq!(rows, first);
+            assert!(told.len() == 1 && told[0].1 == 1, "{told:?}");
+            assert!(told[0].0.contains(reason), "{told:?}");
+        }
+        let mut other = scene.clone();
+        other.accuracy.tolerance = 2e-2;
+        let (_, told) = sweep(&other);
+        assert_eq!(
+            told,
+            [("it was computed with other settings".to_owned(), 2)]
+        );
+        assert!(sweep(&other).1.is_empty());
+    }
+
+    #[test]
+    fn shards_merge_into_the_whole_table() {
+        let table = KnotTable::builtin();
+        let scene = ElasticScene::parse(SCENE, Path::new("scene.toml")).unwrap();
+        let whole = tempfile::tempdir().unwrap();
+        let calm = run_sweep(&scene, &table, &settings(whole.path(), 1), &|_| {}).unwrap();
+        let merged = tempfile::tempdir().unwrap();
+        for shard in ["2/2", "1/2"] {
+            let elsewhere = tempfile::tempdir().unwrap();
+            let part = SweepSettings {
+                shard: Some(shard.parse().unwrap()),
+                ..settings(elsewhere.path(), 1)
+            };
+            assert_eq!(estimate_sweep(&scene, &table, &part).unwrap().n_cases, 1);
+            let report = run_sweep(&scene, &table, &part, &|_| {}).unwrap();
+            assert!(report.n_computed == 1 && report.rows.len() == 1 && !report.interrupted);
+            let name = scene.cases(&table).unwrap()[usize::from(shard == "2/2")].name();
+            let to = merged.path().join("elastic").join(&name);
+            std::fs::create_dir_all(&to).unwrap();
+            for file in std::fs::read_dir(elsewhere.path().join("elastic").join(&name)).unwrap() {
+                let file = file.unwrap();
+                std::fs::copy(file.path(), to.join(file.file_name())).unwrap();
+            }
+        }
+        let report = run_sweep(&scene, &table, &settings(merged.path(), 1), &|_| {}).unwrap();
+        assert_eq!((report.n_computed, report.n_reused), (0, 2));
+        assert_eq!(timeless(&report), timeless(&calm));
+    }
+
+    #[test]
+    fn a_folder_that_cannot_be_written_is_refused_before_anything_runs() {
+        let table = KnotTable::builtin();
+        let scene = ElasticScene::parse(SCENE, Path::new("scene.toml")).unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        // a file where the folder should be: permissions do not stop the superuser
+        let file = folder.path().join("results");
+        std::fs::write(&file, "").unwrap();
+        let begun = std::sync::atomic::AtomicBool::new(false);
+        let error = run_sweep(&scene, &table, &settings(&file, 1), &|_| {
+            begun.store(true, Ordering::Relaxed);
+        })
+        .unwrap_err()
+        .to_string();
+        assert!(
+            error.contains("results") && error.contains("--out"),
+            "{error}"
+        );
+        assert!(!begun.load(Ordering::Relaxed));
     }
 
     #[test]

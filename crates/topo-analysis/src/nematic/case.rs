@@ -3,15 +3,18 @@
 use std::path::Path;
 
 use serde_json::json;
-use topo_core::{Interrupt, StopReason, load_checkpoint, save_checkpoint, write_atomic_bytes};
+use topo_core::{
+    FileError, Interrupt, StopReason, load_checkpoint, save_checkpoint, write_atomic_bytes,
+};
 use topo_nematic::{
     ChargedNematic, Discharge, DischargeSettings, FlowCoupling, NematicAccuracy, NematicBattery,
-    NematicState, Phase, Progress, RunHooks, Threads,
+    NematicError, NematicState, Phase, Progress, RunHooks, Threads,
 };
 
+use super::field::{self, FieldSnapshot};
 use super::late::late_rate;
 use super::scene::{NematicCase, NematicScene};
-use super::snapshot::{Kept, RING_ORDER};
+use super::snapshot::{Kept, RING_ORDER, centre};
 use super::table::{NematicRow, NematicSample};
 use crate::AnalysisError;
 use crate::folder::{identity, make_folder};
@@ -19,16 +22,13 @@ use crate::table::{push_warning, write_table};
 use crate::times::DischargeTimes;
 
 /// Changes whenever the same scene gives other numbers than before; finished cases of another version are computed again.
-const RESULTS_VERSION: u32 = 3;
+pub(super) const RESULTS_VERSION: u32 = 3;
 
 /// Shares of the energy whose times a row lists.
 pub const NEMATIC_SHARES: [f64; 4] = [0.5, 0.9, 0.99, 0.999];
 
-/// Seconds between checkpoints: a killed run loses at most twice that.
-const CHECKPOINT_SECONDS: f64 = 25.0;
-
 /// Schema of the checkpoint of snapshots.
-const KEPT: &str = "nematic-snapshots/3";
+const KEPT: &str = "nematic-snapshots/4";
 
 /// Identity of a case: everything that its numbers depend on.
 pub(super) fn fingerprint(scene: &NematicScene, case: &NematicCase) -> String {
@@ -51,12 +51,29 @@ pub(super) struct CaseRun<'a> {
     pub folder: &'a Path,
     pub interrupt: &'a Interrupt,
     pub threads: Threads,
+    pub keep_fields: bool,
+    pub checkpoint_seconds: f64,
+    /// Told when a checkpoint could not be used.
+    pub damaged: &'a (dyn Fn() + Sync),
     pub told: &'a (dyn Fn(&Progress) + Sync),
 }
 
 impl CaseRun<'_> {
     /// Runs the case and writes its folder; `None` when interrupted: then its checkpoint stays.
+    ///
+    /// A checkpoint that cannot be used is told and forgotten, and the case begins anew.
     pub fn run(&self) -> Result<Option<NematicRow>, AnalysisError> {
+        match self.attempt() {
+            Err(AnalysisError::Nematic { source, .. }) if is_unusable_checkpoint(&source) => {
+                (self.damaged)();
+                forget_others(self.folder, "")?;
+                self.attempt()
+            }
+            other => other,
+        }
+    }
+
+    fn attempt(&self) -> Result<Option<NematicRow>, AnalysisError> {
         let refuse = |source| AnalysisError::Nematic {
             case: self.scene.blank_row(self.case).case_name(),
             source,
@@ -73,7 +90,7 @@ impl CaseRun<'_> {
         let checkpoint = |phase: &str| self.folder.join(format!("{phase}-{mark}.checkpoint"));
         let mut hooks = RunHooks::new(self.interrupt)
             .with_progress(&mut tell)
-            .with_checkpoint(&checkpoint("charge"), CHECKPOINT_SECONDS);
+            .with_checkpoint(&checkpoint("charge"), self.checkpoint_seconds);
         let charged = battery
             .charge(&self.scene.charge, &mut hooks)
             .map_err(refuse)?;
@@ -85,22 +102,42 @@ impl CaseRun<'_> {
             flow: self.case.flow,
             ..self.scene.discharge.clone()
         };
-        let place = checkpoint("snapshots");
+        // a run that keeps fields cannot go on from one that did not
+        let [snapshots, discharge] = if self.keep_fields {
+            ["snapshots-fields", "discharge-fields"]
+        } else {
+            ["snapshots", "discharge"]
+        };
+        let place = checkpoint(snapshots);
+        let there = place.exists();
         let mut kept: Kept = load_checkpoint(&place, KEPT).unwrap_or_default();
+        if kept == Kept::default() {
+            if there {
+                (self.damaged)();
+            }
+            // what was seen before cannot be seen again without going through the discharge again
+            forget_file(&checkpoint(discharge))?;
+            field::forget(self.folder)?;
+        }
+        if self.keep_fields {
+            let state = charged.state();
+            FieldSnapshot::of(None, state, None, centre(state)).write(self.folder, 0)?;
+        }
         let mut failed: Option<AnalysisError> = None;
         let mut see =
             |s: &topo_nematic::NematicSample, state: &NematicState, flow: Option<&FlowCoupling>| {
                 let share = s.energy.total() / released.start();
                 if failed.is_none() && kept.see(s.time, share, state, flow) {
-                    failed = save_checkpoint(&place, KEPT, &kept)
-                        .err()
-                        .map(AnalysisError::from);
+                    let saved = self
+                        .keep_field(s.time, kept.n_kept, state, flow)
+                        .and_then(|()| Ok(save_checkpoint(&place, KEPT, &kept)?));
+                    failed = saved.err();
                 }
             };
         let mut hooks = RunHooks::new(self.interrupt)
             .with_progress(&mut tell)
             .with_samples(&mut see)
-            .with_checkpoint(&checkpoint("discharge"), CHECKPOINT_SECONDS);
+            .with_checkpoint(&checkpoint(discharge), self.checkpoint_seconds);
         let run = released.discharge(&settings, &mut hooks).map_err(refuse)?;
         if let Some(error) = failed {
             return Err(error);
@@ -112,6 +149,19 @@ impl CaseRun<'_> {
         self.write(&charged, &run, &kept, &row)?;
         forget_others(self.folder, "")?;
         Ok(Some(row))
+    }
+
+    fn keep_field(
+        &self,
+        time: f64,
+        number: usize,
+        state: &NematicState,
+        flow: Option<&FlowCoupling>,
+    ) -> Result<(), AnalysisError> {
+        if self.keep_fields {
+            FieldSnapshot::of(Some(time), state, flow, centre(state)).write(self.folder, number)?;
+        }
+        Ok(())
     }
 
     fn row(
@@ -207,7 +257,7 @@ impl CaseRun<'_> {
         write_table(&folder.join("slices.csv"), &all.slices)?;
         let series: Vec<NematicSample> = run.record.samples.iter().map(sample).collect();
         write_table(&folder.join("series.csv"), &series)?;
-        let json = json!({
+        let mut json = json!({
             "schema": "topo-nematic-case/1",
             "fingerprint": fingerprint(self.scene, self.case),
             "case": self.case,
@@ -226,6 +276,9 @@ impl CaseRun<'_> {
             "warnings": row.warnings,
             "timings": { "cpu_seconds": row.cpu_seconds },
         });
+        if self.keep_fields {
+            json["n_fields"] = (kept.n_kept + 1).into();
+        }
         // written last: a folder with this file is complete
         let mut text = serde_json::to_string_pretty(&json).unwrap_or_default();
         text.push('\n');
@@ -233,6 +286,33 @@ impl CaseRun<'_> {
             &folder.join("run.json"),
             text.as_bytes(),
         )?)
+    }
+}
+
+/// Whether what a checkpoint holds is the reason why a run was refused.
+fn is_unusable_checkpoint(error: &NematicError) -> bool {
+    matches!(
+        error,
+        NematicError::ForeignCheckpoint { .. }
+            | NematicError::File(
+                FileError::Truncated { .. }
+                    | FileError::NotACheckpoint { .. }
+                    | FileError::Version { .. }
+                    | FileError::Schema { .. }
+                    | FileError::Corrupt { .. }
+            )
+    )
+}
+
+fn forget_file(path: &Path) -> Result<(), AnalysisError> {
+    match std::fs::remove_file(path) {
+        Err(source) if source.kind() != std::io::ErrorKind::NotFound => {
+            Err(AnalysisError::Output {
+                path: path.to_owned(),
+                source,
+            })
+        }
+        _ => Ok(()),
     }
 }
 

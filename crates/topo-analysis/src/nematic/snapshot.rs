@@ -19,6 +19,8 @@ const SLICE_POINTS: usize = 100;
 pub(super) struct Kept {
     /// How many of the shares have been passed.
     n_passed: usize,
+    /// At how many times the field was looked at.
+    pub n_kept: usize,
     /// Points of the defect lines.
     pub lines: Vec<LinePoint>,
     /// Points of the ring.
@@ -47,6 +49,7 @@ impl Kept {
 
     /// Keeps a state; `None` is the time of the charged one.
     pub fn keep(&mut self, time: Option<f64>, state: &NematicState, flow: Option<&FlowCoupling>) {
+        self.n_kept += 1;
         let centre = centre(state);
         let first = self.lines.len();
         for (k, line) in defect_lines(state).into_iter().enumerate() {
@@ -151,7 +154,7 @@ fn goes_around(points: &[LinePoint]) -> bool {
 }
 
 /// Centre of the particle, or of the cell without one.
-fn centre(state: &NematicState) -> [f64; 3] {
+pub(super) fn centre(state: &NematicState) -> [f64; 3] {
     match state.particle() {
         Some(particle) => particle.centre(),
         None => state.grid().extent().map(|edge| 0.5 * edge),

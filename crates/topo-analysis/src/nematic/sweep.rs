@@ -3,13 +3,15 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
-use topo_nematic::{NematicBattery, Progress, Threads};
+use topo_nematic::{FlowCoupling, NematicBattery, Progress, Threads};
 
-use super::case::{self, CaseRun, fingerprint, forget_others};
+use super::case::{self, CaseRun, RESULTS_VERSION, fingerprint, forget_others};
+use super::field;
 use super::scene::{NematicCase, NematicScene};
 use super::table::NematicRow;
 use crate::AnalysisError;
-use crate::folder::{finished, writable};
+use crate::cost::{Cost, Estimate, Speed, Stopwatch, estimate, threads};
+use crate::folder::{Earlier, finished, tell_replaced, writable};
 use crate::progress::{Event, SweepSettings, with_jobs};
 use crate::table::write_table;
 
@@ -27,13 +29,17 @@ pub struct NematicReport {
     pub n_reused: usize,
     /// Whether it was asked to stop before the end.
     pub interrupted: bool,
+    /// What it was expected to take.
+    pub estimate: Estimate,
+    /// Seconds that its cases took.
+    pub wall_seconds: f64,
 }
 
 /// Runs all cases of a scene; what an earlier run finished with the same settings is kept, and a case that was interrupted or
 /// killed goes on from its last checkpoint.
 ///
 /// Each case writes its own folder and is complete when its `run.json` is there; `nematic/sweep.csv` is written at the end, also
-/// after an interrupt, from what is finished. Results do not depend on the number of jobs.
+/// after an interrupt, from what is finished, whichever shard computed it. Results do not depend on the number of jobs.
 ///
 /// # Errors
 /// Parameters that make no sense, a grid that does not fit in memory, or files that cannot be written; all cases are looked at
@@ -47,38 +53,35 @@ pub fn run_nematic_sweep(
     writable(&folder)?;
     let cases = scene.cases();
     let name = |case: &NematicCase| scene.blank_row(case).case_name();
-    let found: Vec<Option<NematicRow>> = cases
-        .iter()
-        .map(|case| {
-            let place = folder.join(name(case));
-            let kept = (!settings.fresh).then(|| finished(&place, &fingerprint(scene, case)));
-            if settings.fresh {
-                forget_others(&place, "")?;
-            }
-            Ok(kept.flatten().and_then(|rows| rows.into_iter().next()))
-        })
-        .collect::<Result<_, AnalysisError>>()?;
-    let n_reused = found.iter().filter(|f| f.is_some()).count();
-    let mut largest = 0;
-    for (case, _) in cases.iter().zip(&found).filter(|(_, f)| f.is_none()) {
-        let battery = NematicBattery::new(&case.nematic, &scene.accuracy).map_err(|source| {
-            AnalysisError::Nematic {
-                case: name(case),
-                source,
-            }
-        })?;
-        let bytes = battery.memory().total();
-        largest = largest.max(bytes);
+    let Plan {
+        found,
+        todo,
+        together,
+        estimate,
+    } = plan(scene, settings, &cases)?;
+    for (k, case) in cases.iter().enumerate() {
+        if settings.fresh && settings.takes(k) {
+            forget_others(&folder.join(name(case)), "")?;
+        }
     }
+    let n_reused = found.iter().filter(|f| f.is_finished()).count();
+    let n_todo = estimate.n_cases;
     progress(Event::Begin {
-        n_cases: cases.len(),
+        n_cases: n_todo + n_reused,
         n_reused,
+        estimate: &estimate,
     });
-    let together = largest <= BIG_CASE && cases.len() - n_reused > 1;
-    let threads = if together { Threads::One } else { Threads::All };
+    tell_replaced(
+        cases
+            .iter()
+            .map(name)
+            .zip(found.iter().map(Earlier::reason)),
+        progress,
+    );
+    let each = if together { Threads::One } else { Threads::All };
     let n_done = AtomicUsize::new(n_reused);
-    let one = |(case, found): (&NematicCase, &Option<NematicRow>)| -> Result<_, AnalysisError> {
-        if found.is_some() || settings.interrupt.is_requested() {
+    let one = |(case, todo): (&NematicCase, bool)| -> Result<_, AnalysisError> {
+        if !todo || settings.interrupt.is_requested() {
             return Ok(None);
         }
         let name = name(case);
@@ -88,12 +91,21 @@ pub fn run_nematic_sweep(
                 what: &case::told(p),
             });
         };
+        let damaged = || {
+            progress(Event::Replaced {
+                names: std::slice::from_ref(&name),
+                reason: "its checkpoint is damaged",
+            });
+        };
         let run = CaseRun {
             scene,
             case,
             folder: &folder.join(&name),
             interrupt: &settings.interrupt,
-            threads,
+            threads: each,
+            keep_fields: settings.keep_fields,
+            checkpoint_seconds: settings.checkpoint_seconds,
+            damaged: &damaged,
             told: &told,
         };
         let row = run.run()?;
@@ -109,29 +121,131 @@ pub fn run_nematic_sweep(
     // strong charges take longest: they go first, so that no thread waits for them at the end
     let mut order: Vec<usize> = (0..cases.len()).collect();
     order.sort_by_key(|&k| (cases[k].flow.is_none(), std::cmp::Reverse(cases[k].q)));
+    let clock = Stopwatch::start();
     let mut computed: Vec<(usize, Option<NematicRow>)> = with_jobs(settings.jobs, || {
-        let of = |&k: &usize| Ok((k, one((&cases[k], &found[k]))?));
+        let of = |&k: &usize| Ok((k, one((&cases[k], todo[k]))?));
         if together {
             order.par_iter().with_max_len(1).map(of).collect()
         } else {
             order.iter().map(of).collect::<Result<_, AnalysisError>>()
         }
     })??;
+    let wall_seconds = clock.seconds();
     computed.sort_by_key(|c| c.0);
     let n_computed = computed.iter().filter(|c| c.1.is_some()).count();
     let rows: Vec<NematicRow> = found
         .into_iter()
         .zip(computed)
-        .filter_map(|(f, (_, c))| f.or(c))
+        .filter_map(|(f, (_, c))| f.rows().and_then(|rows| rows.into_iter().next()).or(c))
         .collect();
     write_table(&folder.join("sweep.csv"), &rows)?;
     Ok(NematicReport {
-        interrupted: settings.interrupt.is_requested() && rows.len() < cases.len(),
+        interrupted: settings.interrupt.is_requested() && n_computed < n_todo,
         rows,
         n_computed,
         n_reused,
+        estimate,
+        wall_seconds,
     })
 }
+
+/// What [`run_nematic_sweep`] is expected to take for what is not finished; a case that was begun counts in full.
+///
+/// # Errors
+/// Parameters that make no sense, or a grid that does not fit in memory.
+pub fn estimate_nematic_sweep(
+    scene: &NematicScene,
+    settings: &SweepSettings,
+) -> Result<Estimate, AnalysisError> {
+    Ok(plan(scene, settings, &scene.cases())?.estimate)
+}
+
+/// What is left of the cases of a scene, which are computed now, and how.
+struct Plan {
+    found: Vec<Earlier<NematicRow>>,
+    todo: Vec<bool>,
+    /// Whether cases run side by side.
+    together: bool,
+    estimate: Estimate,
+}
+
+fn plan(
+    scene: &NematicScene,
+    settings: &SweepSettings,
+    cases: &[NematicCase],
+) -> Result<Plan, AnalysisError> {
+    let folder = scene.results(&settings.out);
+    let name = |case: &NematicCase| scene.blank_row(case).case_name();
+    let mut found: Vec<Earlier<NematicRow>> = Vec::with_capacity(cases.len());
+    for (k, case) in cases.iter().enumerate() {
+        let place = folder.join(name(case));
+        let usable = !(settings.fresh && settings.takes(k))
+            && (!settings.keep_fields || field::are_kept(&place));
+        found.push(if usable {
+            finished(&place, &fingerprint(scene, case), RESULTS_VERSION)
+        } else {
+            Earlier::None
+        });
+    }
+    let todo: Vec<bool> = (0..cases.len())
+        .map(|k| !found[k].is_finished() && settings.takes(k))
+        .collect();
+    let (mut costs, mut taken) = (Vec::new(), Vec::new());
+    for ((case, found), todo) in cases.iter().zip(&found).zip(&todo) {
+        if !todo && !found.is_finished() {
+            continue;
+        }
+        let battery = NematicBattery::new(&case.nematic, &scene.accuracy).map_err(|source| {
+            AnalysisError::Nematic {
+                case: name(case),
+                source,
+            }
+        })?;
+        let cost = case_cost(case, &battery);
+        match found {
+            Earlier::Finished(rows) => {
+                let seconds = rows.iter().map(|r| r.cpu_seconds).sum();
+                taken.push((cost.seconds, seconds));
+            }
+            _ => costs.push(cost),
+        }
+    }
+    let largest = costs.iter().map(|c| c.bytes).max().unwrap_or(0);
+    let together = largest <= BIG_CASE && costs.len() > 1;
+    // with all threads in a case, its own seconds are not those of all threads
+    let speed = Speed::of(if together { &taken } else { &[] });
+    let estimate = estimate(&costs, speed, threads(settings.jobs), together);
+    Ok(Plan {
+        found,
+        todo,
+        together,
+        estimate,
+    })
+}
+
+/// Cost of a charge with its discharge, as measured for q = 1 to 12 at radii 15, 25 and 52.5.
+fn case_cost(case: &NematicCase, battery: &NematicBattery) -> Cost {
+    let cells = battery.grid().n_cells() as f64 / 1e6;
+    let winding = 0.7 + 0.05 * f64::from(case.q.min(20));
+    let (seconds, flow_bytes) = match &case.flow {
+        None => (STILL_SECONDS, 0),
+        Some(flow) => (
+            FLOWING_SECONDS,
+            FlowCoupling::n_bytes_estimate(battery.grid(), battery.particle().is_some(), flow),
+        ),
+    };
+    Cost {
+        seconds: seconds * winding * cells.powf(CELLS_POWER),
+        bytes: battery.memory().total() + flow_bytes,
+    }
+}
+
+/// Processor seconds of a case of a million cells without flow.
+const STILL_SECONDS: f64 = 33.0;
+/// The same with flow.
+const FLOWING_SECONDS: f64 = 64.0;
+/// Growth with the number of cells.
+const CELLS_POWER: f64 = 1.22;
 
 #[cfg(test)]
 mod tests {
@@ -145,10 +259,8 @@ mod tests {
 
     fn settings(out: &Path, jobs: usize) -> SweepSettings {
         SweepSettings {
-            out: out.to_owned(),
             jobs,
-            fresh: false,
-            interrupt: Interrupt::new(),
+            ..SweepSettings::new(out)
         }
     }
 
@@ -232,5 +344,73 @@ mod tests {
                 .to_string();
             assert!(error.contains(word), "{change:?}: {error}");
         }
+    }
+
+    #[test]
+    fn a_damaged_checkpoint_is_told_and_the_case_begun_anew() {
+        let scene = NematicScene::parse(SCENE, Path::new("scene.toml")).unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let calm = run_nematic_sweep(&scene, &settings(folder.path(), 1), &|_| {}).unwrap();
+        let torn = tempfile::tempdir().unwrap();
+        let stop_in = |phase: &str| {
+            let stop = Interrupt::new();
+            let stopping = SweepSettings {
+                interrupt: stop.clone(),
+                ..settings(torn.path(), 1)
+            };
+            run_nematic_sweep(&scene, &stopping, &|event| {
+                if let Event::Working { what, .. } = event
+                    && what.starts_with(phase)
+                {
+                    stop.request();
+                }
+            })
+            .unwrap();
+        };
+        for damaged in ["charge-", "discharge-", "snapshots-"] {
+            stop_in("discharging: step 4");
+            let case = torn.path().join("nematic").join(calm.rows[1].case_name());
+            let mut n_found = 0;
+            for entry in std::fs::read_dir(&case).unwrap() {
+                let path = entry.unwrap().path();
+                let name = path.file_name().unwrap().to_string_lossy().into_owned();
+                if name.starts_with(damaged) {
+                    n_found += 1;
+                    std::fs::write(&path, b"TOPOCKPT nonsense").unwrap();
+                }
+            }
+            assert_eq!(n_found, 1, "{damaged}");
+            let told = std::sync::Mutex::new(Vec::new());
+            let mended = run_nematic_sweep(&scene, &settings(torn.path(), 1), &|event| {
+                if let Event::Replaced { reason, .. } = event {
+                    told.lock().unwrap().push(reason.to_owned());
+                }
+            })
+            .unwrap();
+            assert_eq!(timeless(&mended), timeless(&calm));
+            assert_eq!(told.into_inner().unwrap(), ["its checkpoint is damaged"]);
+            std::fs::remove_dir_all(torn.path().join("nematic")).unwrap();
+        }
+    }
+
+    #[test]
+    fn shards_merge_into_the_whole_table() {
+        let scene = NematicScene::parse(SCENE, Path::new("scene.toml")).unwrap();
+        let whole = tempfile::tempdir().unwrap();
+        let calm = run_nematic_sweep(&scene, &settings(whole.path(), 1), &|_| {}).unwrap();
+        let merged = tempfile::tempdir().unwrap();
+        for shard in ["1/2", "2/2"] {
+            let part = SweepSettings {
+                shard: Some(shard.parse().unwrap()),
+                ..settings(merged.path(), 1)
+            };
+            assert_eq!(estimate_nematic_sweep(&scene, &part).unwrap().n_cases, 1);
+            let report = run_nematic_sweep(&scene, &part, &|_| {}).unwrap();
+            assert!(report.n_computed == 1 && !report.interrupted);
+            assert!(report.wall_seconds > 0.0 && report.estimate.cpu_seconds > 0.0);
+        }
+        let report = run_nematic_sweep(&scene, &settings(merged.path(), 1), &|_| {}).unwrap();
+        assert_eq!((report.n_computed, report.n_reused), (0, 2));
+        assert_eq!(timeless(&report), timeless(&calm));
     }
 }

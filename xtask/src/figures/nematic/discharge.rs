@@ -108,8 +108,8 @@ fn snapshots(sweep: &NematicSweep, canvas: &mut Canvas) -> Result<String, XtaskE
     Ok(reversal(row, &after))
 }
 
-/// Whether the vertical velocity above the particle changes its sign in the snapshots.
-fn reversal(row: &NematicRow, slices: &[&Slice]) -> String {
+/// How often the vertical velocity above the particle changes its sign, and in how many snapshots with flow.
+pub fn sign_changes(row: &NematicRow, slices: &[&Slice]) -> (usize, usize) {
     let lift = |s: &Slice| -> Option<f64> {
         let above = s
             .points
@@ -120,14 +120,17 @@ fn reversal(row: &NematicRow, slices: &[&Slice]) -> String {
     };
     let signs: Vec<f64> = slices.iter().filter_map(|s| lift(s)).collect();
     let swaps = signs.windows(2).filter(|w| w[0] * w[1] < 0.0).count();
-    if signs.is_empty() {
-        String::new()
-    } else {
-        format!(
-            " With flow (q = {}) the vertical velocity above the particle changes its sign {swaps} times in {} snapshots.",
-            row.q,
-            signs.len()
-        )
+    (swaps, signs.len())
+}
+
+/// Whether the flow reverses, in words.
+fn reversal(row: &NematicRow, slices: &[&Slice]) -> String {
+    match sign_changes(row, slices) {
+        (_, 0) => String::new(),
+        (swaps, n) => format!(
+            " With flow (q = {}) the vertical velocity above the particle changes its sign {swaps} times in {n} snapshots.",
+            row.q
+        ),
     }
 }
 

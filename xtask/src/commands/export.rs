@@ -1,0 +1,30 @@
+//! `cargo xtask export CASE`: files for ParaView, PyVista, meshio, numpy and nemaktis.
+
+use crate::cli::{ExportArgs, ExportFormat};
+use crate::error::XtaskError;
+use crate::export::{self, Wanted};
+
+pub fn run(args: &ExportArgs) -> Result<(), XtaskError> {
+    if !(args.micrometres.is_finite() && args.micrometres > 0.0) {
+        return Err(XtaskError::Argument {
+            key: "--micrometres",
+            value: args.micrometres.to_string(),
+            remedy: "a positive length is needed, such as 0.00663".to_owned(),
+        });
+    }
+    let any = |formats: &[ExportFormat]| {
+        args.format == ExportFormat::All || formats.contains(&args.format)
+    };
+    let wanted = Wanted {
+        vtk: any(&[ExportFormat::Vtk]),
+        npz: any(&[ExportFormat::Npz]),
+        nemaktis: any(&[ExportFormat::Nemaktis]).then_some(args.micrometres),
+    };
+    let folder = args.to.clone().unwrap_or_else(|| args.case.join("export"));
+    let made = export::write(&args.case, &folder, &wanted)?;
+    for note in &made.notes {
+        println!("note: {note}");
+    }
+    println!("{} files written to {}", made.files.len(), folder.display());
+    Ok(())
+}

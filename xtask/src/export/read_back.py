@@ -1,0 +1,82 @@
+"""Reads the files of two exported cases with PyVista, meshio and numpy, and says what it found as JSON."""
+
+import json
+import sys
+import warnings
+from pathlib import Path
+
+import meshio
+import numpy as np
+import pyvista as pv
+
+warnings.filterwarnings("ignore")
+fibre, colloid = Path(sys.argv[1]), Path(sys.argv[2])
+told = {}
+
+charged = pv.read(fibre / "charged.vtp")
+told["fibre_points"] = charged.n_points
+told["fibre_arrays"] = sorted(charged.point_data.keys())
+told["fibre_length"] = float(charged.length) if charged.n_cells == 0 else float(
+    np.linalg.norm(np.diff(charged.points[charged.lines[1:]], axis=0), axis=1).sum())
+told["fibre_curvature"] = float(charged["curvature"].mean())
+tube = charged.tube(radius=1.0)
+told["tube_cells"] = tube.n_cells
+
+reader = pv.get_reader(fibre / "discharge-1.pvd")
+told["fibre_times"] = [float(t) for t in reader.time_values]
+reader.set_active_time_value(reader.time_values[-1])
+told["last_points"] = reader.read()[0].n_points
+
+z = np.load(fibre / "fibre.npz")
+told["npz_same"] = bool(
+    np.array_equal(z["charged_points"], charged.points)
+    and np.array_equal(z["charged_energy_density"], charged["energy_density"])
+    and z["discharge1_points"].shape == (len(reader.time_values), told["last_points"], 3)
+    and np.array_equal(z["discharge1_time"], reader.time_values))
+
+field = pv.read(colloid / "field-charged.vti")
+told["field_dimensions"] = list(field.dimensions)
+told["field_arrays"] = sorted(field.point_data.keys())
+n, q, s = field["director"], field["Q"].reshape(-1, 3, 3), field["order"]
+fluid = field["fluid"] > 0
+told["traceless"] = float(np.abs(np.trace(q, axis1=1, axis2=2)).max())
+told["eigen"] = float(np.abs(np.einsum("ijk,ik->ij", q, n) - s[:, None] * n)[fluid].max())
+told["unit"] = float(np.abs(np.linalg.norm(n[fluid], axis=1) - 1).max())
+told["bulk_order"] = float(s[fluid].max())
+reader = pv.get_reader(colloid / "field.pvd")
+told["field_times"] = len(reader.time_values)
+late = pv.read(colloid / "field-03.vti")
+told["speed"] = float(np.linalg.norm(late["velocity"], axis=1).max()) if "velocity" in late.point_data else 0.0
+z = np.load(colloid / "field-charged.npz")
+told["field_npz_same"] = bool(
+    np.array_equal(z["Q"].reshape(-1, 3, 3), q)
+    and z["order"].shape == tuple(reversed(field.dimensions))
+    and np.allclose(z["origin"], field.origin))
+
+nem = pv.read(colloid / "nemaktis-charged.vti")
+qn, mask = nem["Q"], nem["domain_mask"]
+told["nemaktis_arrays"] = sorted(nem.point_data.keys())
+told["nemaktis_components"] = [nem["n"].shape[1], qn.shape[1]]
+told["nemaktis_trace"] = float(np.abs(qn[:, :3].sum(axis=1)).max())
+told["nemaktis_mask"] = bool(np.array_equal(mask > 0, fluid))
+nn = nem["n"]
+qnn = sum(qn[:, k] * nn[:, k] ** 2 for k in range(3)) + 2 * (
+    qn[:, 3] * nn[:, 0] * nn[:, 1] + qn[:, 4] * nn[:, 0] * nn[:, 2] + qn[:, 5] * nn[:, 1] * nn[:, 2])
+told["nemaktis_order"] = float(np.median(qnn[fluid]))
+told["nemaktis_spacing"] = float(nem.spacing[0] / field.spacing[0])
+
+sphere = pv.read(colloid / "particle.vtu")
+told["sphere_area"] = float(sphere.extract_surface().area)
+mesh = meshio.read(colloid / "particle.vtu")
+told["meshio_points"] = len(mesh.points)
+told["meshio_cells"] = {c.type: len(c.data) for c in mesh.cells}
+told["meshio_same"] = bool(np.array_equal(mesh.point_data["director"], sphere["director"]))
+lines = meshio.read(colloid / "lines-charged.vtu")
+told["meshio_lines"] = {c.type: len(c.data) for c in lines.cells}
+told["line_times"] = len(pv.get_reader(colloid / "lines.pvd").time_values)
+told["last_lines"] = pv.read(sorted(colloid.glob("lines-[0-9]*.vtu"))[-1]).n_cells
+plane = pv.read(colloid / "plane-charged.vti")
+told["plane_dimensions"] = list(plane.dimensions)
+z = np.load(colloid / "colloid.npz")
+told["plane_same"] = bool(np.array_equal(z["plane_order"][0].ravel(), plane["order"]))
+print(json.dumps(told))
