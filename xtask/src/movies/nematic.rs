@@ -144,7 +144,7 @@ impl Play {
             format!("*t* = {} *R*^{{2}}/Γ*L*", text::significant(t, 2))
         });
         let bold = Style::default().bold();
-        canvas.text(480.0, 34.0, &told, bold.clone().middle().size(22.0));
+        canvas.text(480.0, 34.0, &told, bold.middle().size(22.0));
         let label = format!("*q* = {Q}, *R* = {} ξ_{{N}}", self.radius);
         canvas.text(20.0, 34.0, &label, bold.size(18.0));
 

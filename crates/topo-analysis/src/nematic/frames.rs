@@ -42,7 +42,7 @@ pub fn nematic_frames(
     };
     let mut nematic = scene.nematic.clone();
     nematic.pattern = SurfacePattern::Charge(q as i32);
-    let mut accuracy = scene.accuracy.clone();
+    let mut accuracy = scene.accuracy;
     accuracy.threads = Threads::All;
     let battery = NematicBattery::new(&nematic, &accuracy).map_err(refuse)?;
     let charged = battery
