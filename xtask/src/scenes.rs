@@ -27,17 +27,18 @@ fn elastic(quality: Quality) -> String {
 
 fn nematic(quality: Quality) -> String {
     let scene = NematicScene::published(preset(quality));
-    let flowing = scene.flowing.unwrap_or_default();
-    let numbers: Vec<String> = flowing.iter().map(u32::to_string).collect();
+    let flowing = scene.flowing.map_or(String::new(), |q| {
+        let numbers: Vec<String> = q.iter().map(u32::to_string).collect();
+        format!("q = [{}]\n", numbers.join(", "))
+    });
     format!(
         "# The sweep of the nematic figures. Run it: cargo xtask run scenes/nematic.toml --out again\n\
          [nematic]\nradius = {}\nspacing = {}\nq = {{ from = 1, to = {}, n = {} }}\n\
-         [flow]\nq = [{}]\n",
+         [flow]\n{flowing}",
         scene.nematic.radius,
         scene.nematic.spacing,
         scene.charges.len(),
-        scene.charges.len(),
-        numbers.join(", ")
+        scene.charges.len()
     )
 }
 

@@ -5,7 +5,8 @@ use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 const ELASTIC: &str = "[rod]\nknot = \"3_1\"\ntwist = { from = -1, to = 1, n = 9 }\n[rod.contact]\n[rod.friction]\n[charge]\nduration = 0.1\n[discharge]\nuntil_released = 0.7\nclosures = 4\n[accuracy]\nedges = 80\ntolerance = 4e-3\n";
-const NEMATIC: &str = "[nematic]\nradius = 7\nspacing = 1.0\nq = [1, 2, 3]\n[charge]\ntolerance = 1e-6\n[discharge]\nuntil_released = 0.99\n[accuracy]\ntolerance = 1e-4\n";
+/// Without flow, and one q with it besides.
+const NEMATIC: &str = "[nematic]\nradius = 6\nspacing = 1.0\nq = [1, 2, 3]\n[charge]\ntolerance = 1e-5\n[discharge]\nuntil_released = 0.99\n[flow]\nq = 2\n[accuracy]\ntolerance = 1e-4\n";
 
 fn xtask() -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_xtask"));

@@ -49,13 +49,13 @@ pub struct NematicCase {
 }
 
 impl NematicScene {
-    /// The published sweep, q = 1 to 12: at radius 15 without flow but for one q (draft), 25 with flow (standard), and the
-    /// published 52.5 with flow (paper).
+    /// The published sweep, q = 1 to 12: at radius 15 without flow but for one q (draft), 25 without and with flow (standard),
+    /// and the published 52.5 with flow (paper).
     pub fn published(preset: Preset) -> Self {
         let (radius, flowing) = match preset {
             Preset::Draft => (15.0, Some(vec![DRAFT_FLOW])),
             Preset::Standard => (25.0, Some((1..=12).collect())),
-            Preset::Paper => (52.5, Some((1..=12).collect())),
+            Preset::Paper => (52.5, None),
         };
         Self {
             folder: "nematic".to_owned(),

@@ -118,9 +118,11 @@ pub fn run_nematic_sweep(
         }
         Ok(row)
     };
-    // strong charges take longest: they go first, so that no thread waits for them at the end
     let mut order: Vec<usize> = (0..cases.len()).collect();
-    order.sort_by_key(|&k| (cases[k].flow.is_none(), std::cmp::Reverse(cases[k].q)));
+    if together {
+        // strong charges take longest: they go first, so that no thread waits for them at the end
+        order.sort_by_key(|&k| (cases[k].flow.is_none(), std::cmp::Reverse(cases[k].q)));
+    }
     let clock = Stopwatch::start();
     let mut computed: Vec<(usize, Option<NematicRow>)> = with_jobs(settings.jobs, || {
         let of = |&k: &usize| Ok((k, one((&cases[k], todo[k]))?));
