@@ -248,6 +248,18 @@ mod tests {
     }
 
     #[test]
+    fn the_page_of_the_documentation_holds_every_claim() {
+        let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/reproduction.md");
+        let text = std::fs::read_to_string(page).unwrap();
+        for claim in elastic::CLAIMS.iter().chain(&nematic::CLAIMS) {
+            assert!(text.contains(claim.text), "the page lacks: {}", claim.text);
+        }
+        for verdict in ["**confirmed**", "**partly**"] {
+            assert!(text.contains(verdict));
+        }
+    }
+
+    #[test]
     fn verdicts_follow_the_tables() {
         let dir = tempfile::tempdir().unwrap();
         synthetic::nematic(dir.path());

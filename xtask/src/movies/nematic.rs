@@ -61,7 +61,7 @@ fn clip(stage: &Stage<'_>) -> Result<Clip, XtaskError> {
     };
     let mut scene = NematicScene::published(crate::compute::preset(quality));
     // the discharge is seen at its steps: more of them for smooth motion
-    scene.accuracy.tolerance *= 0.1;
+    scene.accuracy.tolerance *= 0.25;
     let frames = nematic_frames(&scene, Q, 36.0, stage.interrupt)?;
     crate::interrupt::check(stage.interrupt)?;
     let radius = scene.nematic.radius;
@@ -199,7 +199,7 @@ impl Play {
 
     /// Logarithm of the energy against that of time, with a dot for now.
     fn energy(&self, canvas: &mut Canvas, now: usize, time: Option<f64>, last: f64) {
-        let (at, size) = ([70.0, 590.0], [860.0, 90.0]);
+        let (at, size) = ([70.0, 582.0], [860.0, 90.0]);
         let energy = |s: &Shot| s.energy.max(1e-9).ln();
         let top = self.shots.iter().map(energy).fold(f64::MIN, f64::max);
         let bottom = self.shots.iter().map(energy).fold(f64::MAX, f64::min);
@@ -221,6 +221,14 @@ impl Play {
             canvas.text(x, foot + 19.0, &text::log_tick(decade), style);
             decade *= 10.0;
         }
+        let style = Style::default().middle().size(13.0);
+        let middle = at[0] + 0.5 * size[0];
+        canvas.text(middle, foot + 33.0, "*t* Γ*L*/*R*^{2}", style);
+        let style = Style {
+            upward: true,
+            ..Style::default().middle().size(13.0)
+        };
+        canvas.text(at[0] - 14.0, at[1] + 0.5 * size[1], "log *F*", style);
         let path: Vec<[f64; 2]> = self.shots.iter().map(place).collect();
         line_path(canvas, &path, QUIET, 1.2);
         line_path(canvas, &path[..=now], INK, 2.4);
@@ -251,9 +259,10 @@ impl Play {
             },
         );
         format!(
-            "q = {Q} at R = {} ξ_N: {} Lξ_N charged; {fate}; the vertical velocity above the particle changes its sign {swaps} times.",
+            "q = {Q} at R = {} ξ_N: {} Lξ_N charged; {fate}; the vertical velocity above the particle changes its sign {}.",
             self.radius,
-            text::significant(first, 4)
+            text::significant(first, 4),
+            text::times(swaps)
         )
     }
 }

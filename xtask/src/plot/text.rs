@@ -117,6 +117,16 @@ pub fn fixed(value: f64, places: usize) -> String {
     format!("{value:.places$}").replace('-', "−")
 }
 
+/// How often something happens.
+pub fn times(n: usize) -> String {
+    match n {
+        0 => "never".to_owned(),
+        1 => "once".to_owned(),
+        2 => "twice".to_owned(),
+        n => format!("{n} times"),
+    }
+}
+
 /// Twist density for reading, with its sign.
 pub fn signed(value: f64) -> String {
     let text = number(value, 2);

@@ -22,7 +22,7 @@ pub const CLAIMS: [Claim; 13] = [
         text: "The cross-section of the ring changes along it between +1/2, twisted and −1/2.",
         published: "Fig. 4a",
         figure: "nematic-charging",
-        depends: "nothing seen",
+        depends: "how well the grid resolves the core of the ring",
         look: profiles,
     },
     Claim {
@@ -129,20 +129,28 @@ fn flat(t: &Tables) -> Said {
 
 fn profiles(t: &Tables) -> Said {
     let s = of(t)?;
-    let row = s.rows.iter().find(|r| r.q == 2)?;
-    let rings = s.rings(row).ok()?;
-    let angles: Vec<f64> = rings
+    let mut ranges = Vec::new();
+    for row in s.rows.iter().filter(|r| r.q > 1) {
+        let Ok(rings) = s.rings(row) else { continue };
+        let charged = rings.iter().filter(|l| l.time.is_none());
+        let angles: Vec<f64> = charged
+            .flat_map(|l| l.angles.iter().flatten().copied())
+            .collect();
+        let low = angles.iter().copied().reduce(f64::min);
+        let high = angles.iter().copied().reduce(f64::max);
+        ranges.extend(low.zip(high).map(|(low, high)| (row.q, low, high)));
+    }
+    let widest = ranges
         .iter()
-        .filter(|l| l.time.is_none())
-        .flat_map(|l| l.angles.iter().flatten().copied())
-        .collect();
-    let low = angles.iter().copied().reduce(f64::min)?;
-    let high = angles.iter().copied().reduce(f64::max)?;
+        .max_by(|a, b| (a.2 - a.1).total_cmp(&(b.2 - b.1)))?;
+    let (q, low, high) = *widest;
+    let through = ranges.iter().filter(|r| r.1 < 90.0 && r.2 > 90.0).count();
     Some((
         format!(
-            "q = 2: the angle between the axis of rotation and the ring runs from {} to {} degrees (0: +1/2, 90: twisted, 180: −1/2)",
+            "the angle between the axis of rotation and the ring (0: +1/2, 90: twisted, 180: −1/2) runs from {} to {} degrees at q = {q}; it passes 90 degrees on {through} of {} rings",
             text::number(low, 0),
-            text::number(high, 0)
+            text::number(high, 0),
+            ranges.len()
         ),
         Verdict::both(low < 30.0, high > 150.0),
     ))

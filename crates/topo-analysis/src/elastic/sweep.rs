@@ -221,15 +221,15 @@ fn case_cost(scene: &ElasticScene, n_cuts: Option<usize>) -> Cost {
 }
 
 /// Processor seconds of a charge at N = 200 and tolerance 1e-3 h.
-const CHARGE_SECONDS: f64 = 0.35;
+const CHARGE_SECONDS: f64 = 0.2;
 /// The same of a discharge.
-const DISCHARGE_SECONDS: f64 = 0.50;
+const DISCHARGE_SECONDS: f64 = 0.6;
 /// Growth with the number of edges.
 const EDGES_POWER: f64 = 1.3;
 /// Growth with the inverse of the tolerance.
 const TOLERANCE_POWER: f64 = 0.5;
 /// Near-tied cuts of a case, on average over the published sweep.
-const MEAN_NEAR_TIES: f64 = 3.0;
+const MEAN_NEAR_TIES: f64 = 4.4;
 /// Bytes that a case holds at N = 200.
 const BYTES: f64 = 6e7;
 

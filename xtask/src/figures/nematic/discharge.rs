@@ -128,8 +128,9 @@ fn reversal(row: &NematicRow, slices: &[&Slice]) -> String {
     match sign_changes(row, slices) {
         (_, 0) => String::new(),
         (swaps, n) => format!(
-            " With flow (q = {}) the vertical velocity above the particle changes its sign {swaps} times in {n} snapshots.",
-            row.q
+            " With flow (q = {}) the vertical velocity above the particle changes its sign {} in {n} snapshots.",
+            row.q,
+            text::times(swaps)
         ),
     }
 }

@@ -39,7 +39,9 @@ pub fn draw(
     let apart = stride as f64 * pitch * unit;
     let outside = |p: &&SlicePoint| p.x.hypot(p.z) > look.radius + 0.5 * pitch;
     let place = |p: &SlicePoint| [cx + p.x * unit, cy - p.z * unit];
-    for p in slice.thinned(stride).filter(outside) {
+    // a rod at the plates would stick out of the picture
+    let inside = |p: &&SlicePoint| p.z.abs() + 0.36 * apart / unit * p.nz.abs() < half_z;
+    for p in slice.thinned(stride).filter(outside).filter(inside) {
         let (at, d) = (place(p), [0.36 * apart * p.nx, -0.36 * apart * p.nz]);
         let (from, to) = ([at[0] - d[0], at[1] - d[1]], [at[0] + d[0], at[1] + d[1]]);
         canvas.line(from, to, "#5d9a4e", 0.9);
