@@ -1,9 +1,9 @@
-//! What the knot generator is made of: thickness, invariants, names, one search and one level.
+//! What the knot generator is made of: thickness, invariants, names, one search and one level, the certificate.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use topo_knots::{
-    Invariants, KnotTable, TightenSettings, closed_braid, identify, identify_open,
-    jones_polynomial, thickness, thickness_brute_force, tighten,
+    Certificate, Invariants, KnotTable, TightenSettings, alexander_polynomial, closed_braid,
+    identify, identify_open, jones_polynomial, struts, thickness, thickness_brute_force, tighten,
 };
 
 fn knots(c: &mut Criterion) {
@@ -21,6 +21,9 @@ fn knots(c: &mut Criterion) {
     let x = curve.vertices();
     c.bench_function("invariants from coordinates, 500 vertices", |b| {
         b.iter(|| Invariants::of(x));
+    });
+    c.bench_function("Alexander polynomial from coordinates, 500 vertices", |b| {
+        b.iter(|| alexander_polynomial(x));
     });
     c.bench_function("Jones polynomial from coordinates, 500 vertices", |b| {
         b.iter(|| jones_polynomial(x));
@@ -42,6 +45,14 @@ fn knots(c: &mut Criterion) {
     slow.bench_function("tight 3_1 from one start, draft", |b| {
         let start = closed_braid(&[1, 1, 1]).expect("a knot");
         b.iter(|| tighten("3_1", std::slice::from_ref(&start), &once));
+    });
+    let start = closed_braid(&[1, 1, 1]).expect("a knot");
+    let tight = tighten("3_1", std::slice::from_ref(&start), &once).expect("tight");
+    slow.bench_function("certificate of a tight 3_1, draft", |b| {
+        b.iter(|| Certificate::of(&tight.curve, true));
+    });
+    slow.bench_function("struts of a tight 3_1, draft", |b| {
+        b.iter(|| struts(&tight.curve, 5e-3, 2));
     });
     slow.finish();
 }

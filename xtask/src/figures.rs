@@ -51,6 +51,8 @@ pub struct Context<'a> {
     pub quality: Quality,
     /// Factor on the pixels of the PNG; 1 for print.
     pub detail: f64,
+    /// Whether tight knots are thin tubes with their struts.
+    pub struts: bool,
 }
 
 /// A figure as drawn.

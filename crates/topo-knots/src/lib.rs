@@ -1,6 +1,6 @@
 //! Knot table, braid closures, tight shapes, and knot types from coordinates.
 //!
-//! Reading order: `table` (what is known of a knot), `braid`, `curve_file` (coordinates from and to files), `start_file` and `moebius` (curves to start from),
+//! Reading order: `table` (what is known of a knot), `braid`, `curve_file` (coordinates from and to files), `start_file`, `moebius` and `inversion` (curves to start from),
 //! `thickness`, `tighten` (from a loose curve to a tight one, with its certificate), `ideal` (the same, kept on disk),
 //! `invariant` (polynomial, determinant and signature from coordinates) and `identify` (names from coordinates).
 //!
@@ -12,6 +12,7 @@ mod error;
 mod ideal;
 mod identify;
 mod invariant;
+mod inversion;
 mod moebius;
 mod segment;
 mod start_file;
@@ -34,8 +35,8 @@ pub use start_file::StartCurve;
 pub use table::{Chirality, KnotEntry, KnotTable};
 pub use thickness::{Thickness, thickness, thickness_brute_force, windowed_half_distance};
 pub use tighten::{
-    Centreline, Certificate, SecondOpinion, TightKnot, TightenSettings, second_opinion, tighten,
-    tighten_entry,
+    Centreline, Certificate, SecondOpinion, TightKnot, TightenSettings, second_opinion, struts,
+    tighten, tighten_entry,
 };
 
 /// A point or vector in space.

@@ -10,16 +10,19 @@ mod qp;
 mod search;
 mod second;
 mod settings;
+mod struts;
 
 pub use certificate::Certificate;
 pub use second::{SecondOpinion, second_opinion};
 pub use settings::TightenSettings;
+pub use struts::struts;
 
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use serde::{Deserialize, Serialize};
 use topo_core::Polyline;
 
+use crate::inversion::inverted;
 use crate::moebius::relax_moebius;
 use crate::{Invariants, KnotEntry, KnotError, closed_braid, thickness};
 use level::{LOOSE_REACH, Level, NEAR_REACH, Outcome, tighten_level};
@@ -33,6 +36,8 @@ const N_PADS: usize = 2;
 
 /// Random words that keep the number of strands; further ones get more.
 const N_PADDED: usize = 2;
+/// Vertices per unit of ropelength of the curve that is inverted.
+const LEAST_PER_UNIT: f64 = 4.0;
 /// Generators up to which a word gets a further strand; more make long starts.
 const MOST_STRANDS: i32 = 4;
 /// Vertices per unit of ropelength above which a level starts from a curve that is nearly tight.
@@ -100,7 +105,7 @@ impl TightKnot {
 }
 
 /// Tightens a knot of the table from the starts that serve it: its curve or closed braid, plain and rounded, the closures of
-/// its other words, and of random words of the same braid.
+/// its other words and of random words of the same braid, and inversions of the best of these if the settings ask for them.
 ///
 /// # Errors
 /// As [`tighten`], and [`KnotError::Mismatch`] if a start contradicts the invariants of the entry.
@@ -113,7 +118,10 @@ pub fn tighten_entry(
     let plain = entry.start_curve()?;
     let mut starts = vec![plain];
     for n_edges in MOEBIUS_EDGES {
-        let round = relax_moebius(&starts[0], n_edges, MOEBIUS_STEPS)?;
+        // A curve that is too long for so few edges is no loss: the other starts remain.
+        let Ok(round) = relax_moebius(&starts[0], n_edges, MOEBIUS_STEPS) else {
+            continue;
+        };
         // A long start needs more edges, or its strands pass through each other.
         if entry.verify(&round).is_ok() {
             starts.push(round);
@@ -124,8 +132,8 @@ pub fn tighten_entry(
         starts.push(closed_braid(word)?);
     }
     let mut rng = Pcg64::seed_from_u64(settings.seed);
-    // Words of the table were chosen for the basins that they lead to: one random word less is needed.
-    let n_chosen = entry.other_braids.len().min(1);
+    // Words and curves of the table were chosen for the basins that they lead to: one random word less is needed.
+    let n_chosen = usize::from(!entry.other_braids.is_empty() || entry.start.is_some());
     for k in 0..settings.n_variants.saturating_sub(n_chosen) {
         if !entry.braid.is_empty() {
             let word = if k < N_PADDED {
@@ -139,9 +147,37 @@ pub fn tighten_entry(
     for start in &starts {
         entry.verify(start)?;
     }
+    if settings.n_inversions > 0 {
+        starts.extend(inversions(entry, &starts, settings)?);
+    }
     let mut tight = tighten(&entry.name, &starts, settings)?;
     tight.cpu_seconds = clock.seconds();
     Ok(tight)
+}
+
+/// Inversions of the best that the starts lead to, rounded.
+fn inversions(
+    entry: &KnotEntry,
+    starts: &[Polyline],
+    settings: &TightenSettings,
+) -> Result<Vec<Polyline>, KnotError> {
+    let coarse = TightenSettings {
+        per_unit: LEAST_PER_UNIT,
+        n_kicks: 0,
+        ..*settings
+    };
+    let tight = tighten(&entry.name, starts, &coarse)?;
+    let round = relax_moebius(&tight.curve, MOEBIUS_EDGES[0], MOEBIUS_STEPS)?;
+    let mut rng = Pcg64::seed_from_u64(settings.seed);
+    let mut found = Vec::new();
+    for _ in 0..settings.n_inversions {
+        if let Some(curve) = inverted(&round, &mut rng)?
+            && entry.verify(&curve).is_ok()
+        {
+            found.push(curve);
+        }
+    }
+    Ok(found)
 }
 
 /// The word with pairs of a generator and its inverse put in at random places: the same braid, embedded with detours.

@@ -61,6 +61,12 @@ pub struct TightenArgs {
     /// How fine.
     #[arg(long, value_enum, default_value_t = KnotQuality::Standard)]
     pub quality: KnotQuality,
+    /// Start also from this number of inversions in spheres around random points: for knots that end in a poor minimum.
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub inversions: usize,
+    /// Seed of the random choices of the search.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub seed: u64,
     /// Tighten each once more by the second method, from a loosened start: about a minute a knot at standard quality.
     #[arg(long)]
     pub check: bool,

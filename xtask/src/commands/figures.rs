@@ -43,6 +43,7 @@ pub fn run(args: &FiguresArgs) -> Result<(), XtaskError> {
         results,
         quality: args.quality,
         detail: 1.0,
+        struts: false,
     };
     let progress = Progress::start("drawing", chosen.len());
     let mut done: Vec<Done> = Vec::new();

@@ -2,6 +2,7 @@
 
 mod identify;
 mod show;
+mod table;
 mod tighten;
 
 use crate::cli::{KnotArgs, KnotCommand};

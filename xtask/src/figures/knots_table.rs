@@ -4,13 +4,16 @@ use super::series::{Table, bounds};
 use super::{Context, Drawn, Figure};
 use crate::data::{Curve, KnotRow, read_csv};
 use crate::error::XtaskError;
-use crate::plot::canvas::{Canvas, tube_png};
+use crate::plot::canvas::{Canvas, tube_and_rods_png};
 use crate::plot::color::Scale;
+use crate::plot::raster::Rods;
 use crate::plot::style::Style;
 use crate::plot::tube::Tube;
 use crate::plot::{camera, text};
 use nalgebra::Vector3;
 use rayon::prelude::*;
+use topo_core::Polyline;
+use topo_knots::struts;
 
 pub(super) const FIGURE: Figure = Figure {
     name: "knots-table",
@@ -25,6 +28,16 @@ pub(super) const FIGURE: Figure = Figure {
 
 const COLUMNS: usize = 7;
 const CELL: [f64; 2] = [96.0, 104.0];
+/// Tube radius when struts are shown; at the full radius 1 they lie inside.
+const THIN: f64 = 0.32;
+/// Radius and colour of a strut.
+const STRUT: f64 = 0.055;
+const STRUT_COLOR: [u8; 3] = [214, 96, 77];
+const STRUT_NOTE: &str = "Tubes are drawn at a third of their radius, with struts: lines between points at which the full tubes touch.";
+/// Strands this fraction of a diameter further apart than the nearest ones are shown as touching.
+const SLACK: f64 = 5e-3;
+/// Struts shown per unit of length along a line of contact.
+const STRUTS_PER_UNIT: f64 = 2.0;
 
 fn draw(context: &Context) -> Result<Drawn, XtaskError> {
     let rows: Vec<KnotRow> = read_csv(&context.results.join("knots/table.csv"))?;
@@ -53,7 +66,8 @@ fn draw(context: &Context) -> Result<Drawn, XtaskError> {
     let scale = Scale::viridis(0.0, 1.0);
     let n_lines = rows.len().div_ceil(COLUMNS);
     let pictures = CELL[1] * n_lines as f64;
-    let height = 8.0 + pictures + 44.0 + 14.0 * rows.len() as f64 + 26.0;
+    let n_notes = if context.struts { 2.0 } else { 1.0 };
+    let height = 8.0 + pictures + 44.0 + 14.0 * rows.len() as f64 + 14.0 + 12.0 * n_notes;
     let mut canvas = Canvas::new(720.0, height, 4.0 * context.detail);
     let size = [CELL[0], CELL[1] - 16.0];
     let zoom = canvas.zoom();
@@ -61,11 +75,18 @@ fn draw(context: &Context) -> Result<Drawn, XtaskError> {
         .par_iter()
         .map(|view| {
             let [x0, y0, x1, y1] = camera::extent(view);
-            let tube = Tube::new(view, &curvature(view), true, 1.0, &scale);
+            let radius = if context.struts { THIN } else { 1.0 };
+            let tube = Tube::new(view, &curvature(view), true, radius, &scale);
             let tube = tube.ok_or_else(|| XtaskError::Drawing {
                 reason: "a knot is no curve".to_owned(),
             })?;
-            tube_png(size, [(x0 + x1) / 2.0, (y0 + y1) / 2.0], unit, zoom, &tube)
+            let rods = if context.struts {
+                rods(view)?
+            } else {
+                Rods::default()
+            };
+            let centre = [(x0 + x1) / 2.0, (y0 + y1) / 2.0];
+            tube_and_rods_png(size, centre, unit, zoom, &tube, &rods)
         })
         .collect::<Result<Vec<_>, _>>()?;
     for (i, (row, image)) in rows.iter().zip(&images).enumerate() {
@@ -86,10 +107,14 @@ fn draw(context: &Context) -> Result<Drawn, XtaskError> {
         "Curvature κ*r*",
     );
     numbers(&mut canvas, &rows, 8.0 + pictures + 26.0);
-    canvas.footnote(&[format!(
+    let mut notes = vec![format!(
         "{} quality. *L*/*r*: length of the centreline over the radius of the thickest tube that fits around it. Strut: touching pair; kink: vertex at the curvature bound.",
         context.quality
-    )]);
+    )];
+    if context.struts {
+        notes.push(STRUT_NOTE.to_owned());
+    }
+    canvas.footnote(&notes);
     let mut table = Table::new(
         "knot,length_over_radius,reference,excess_percent,writhe,average_crossing_number,struts,kinks",
     );
@@ -173,6 +198,20 @@ fn excess(row: &KnotRow) -> f64 {
 
 fn optional(value: Option<f64>) -> String {
     value.map_or_else(|| "–".to_owned(), |v| text::fixed(v, 3))
+}
+
+/// Struts of a tight curve.
+fn rods(points: &[Vector3<f64>]) -> Result<Rods, XtaskError> {
+    let curve = Polyline::new(points.to_vec(), true).map_err(|e| XtaskError::Drawing {
+        reason: format!("a knot is no curve: {e}"),
+    })?;
+    let per_unit = points.len() as f64 / curve.length();
+    let spacing = (per_unit / STRUTS_PER_UNIT).round().max(1.0) as usize;
+    Ok(Rods {
+        ends: struts(&curve, SLACK, spacing),
+        radius: STRUT,
+        color: STRUT_COLOR,
+    })
 }
 
 /// Curvature at each vertex by the circle through it and its neighbours a radius away.

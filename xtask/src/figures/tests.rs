@@ -8,7 +8,22 @@ fn context(results: &Path) -> Context<'_> {
         results,
         quality: Quality::Draft,
         detail: 0.15,
+        struts: false,
     }
+}
+
+#[test]
+fn struts_of_tight_knots_are_drawn_on_demand() {
+    let dir = tempfile::tempdir().unwrap();
+    synthetic::results(dir.path(), 2, &[0.0]);
+    let plain = context(dir.path());
+    let with_struts = Context {
+        struts: true,
+        ..plain
+    };
+    let figure = *ALL.iter().find(|f| f.name == "knots-table").unwrap();
+    let [a, b] = [plain, with_struts].map(|c| draw(figure, &c).unwrap().preview);
+    assert_ne!(a, b);
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use super::color::{INK, QUIET, Scale};
 use super::font;
-use super::raster::{self, Window};
+use super::raster::{self, Rods, Window};
 use super::render;
 use super::solids::Solids;
 use super::style::{Anchor, Style};
@@ -253,7 +253,19 @@ pub fn tube_png(
     zoom: f64,
     tube: &Tube,
 ) -> Result<Vec<u8>, XtaskError> {
-    let pixmap = raster::draw(tube, &window(size, center, scale, zoom)).ok_or_else(|| {
+    tube_and_rods_png(size, center, scale, zoom, tube, &Rods::default())
+}
+
+/// The same with thin rods, such as struts.
+pub fn tube_and_rods_png(
+    size: [f64; 2],
+    center: [f64; 2],
+    scale: f64,
+    zoom: f64,
+    tube: &Tube,
+    rods: &Rods,
+) -> Result<Vec<u8>, XtaskError> {
+    let pixmap = raster::draw(tube, rods, &window(size, center, scale, zoom)).ok_or_else(|| {
         XtaskError::Drawing {
             reason: "tube without pixels".to_owned(),
         }

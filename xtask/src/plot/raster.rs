@@ -1,6 +1,6 @@
 //! Pixels of capsules and of the tubes they make: orthographic, z-buffered, supersampled, shaded in linear light.
 
-use super::color::{from_linear, to_linear};
+use super::color::{Rgb, from_linear, to_linear};
 use super::tube::{Tube, key_light};
 use nalgebra::Vector3;
 use resvg::tiny_skia::{Pixmap, PremultipliedColorU8};
@@ -43,21 +43,48 @@ pub struct Light {
     pub behind: f32,
 }
 
-/// Picture of one tube on a transparent ground; `None` when the window has no pixels.
-pub fn draw(tube: &Tube, window: &Window) -> Option<Pixmap> {
+/// Thin straight rods of one colour, such as struts between strands.
+#[derive(Debug, Clone, Default)]
+pub struct Rods {
+    /// Ends of each, in view coordinates.
+    pub ends: Vec<[Vector3<f64>; 2]>,
+    /// Their radius.
+    pub radius: f64,
+    /// Their colour.
+    pub color: Rgb,
+}
+
+/// Picture of one tube with rods on a transparent ground; `None` when the window has no pixels.
+pub fn draw(tube: &Tube, rods: &Rods, window: &Window) -> Option<Pixmap> {
     let colors: Vec<[f32; 3]> = tube.colors.iter().map(|c| c.map(to_linear)).collect();
     let depths = tube.points.iter().map(|p| p.z);
     let (near, far) = depths.fold((f64::MIN, f64::MAX), |(a, b), z| (a.max(z), b.min(z)));
     let span = (near - far).max(4.0 * tube.radius);
     let pieces =
         (0..tube.n_pieces()).map(|i| (tube.points[i], tube.points[tube.next(i)], tube.radius));
+    let pieces = pieces.chain(rods.ends.iter().map(|[a, b]| (*a, *b, rods.radius)));
+    let rod_color = rods.color.map(to_linear);
     resolve(window, &cast(pieces, window), |p, hit| {
+        let behind = ((near - hit.depth) / span).clamp(0.0, 1.0) as f32;
+        if let Some([a, b]) = (hit.piece as usize)
+            .checked_sub(tube.n_pieces())
+            .and_then(|k| rods.ends.get(k))
+        {
+            let (axis, from) = (b - a, p - a);
+            let normal = from - axis * (from.dot(&axis) / axis.norm_squared().max(1e-12));
+            let normal = normal.try_normalize(1e-9).unwrap_or_else(Vector3::z);
+            let open = Light {
+                sky: 1.0,
+                key: 1.0,
+                behind,
+            };
+            return shade(rod_color, &normal, open);
+        }
         let (place, normal) = tube.surface(hit.piece as usize, f64::from(hit.along), p);
         let [sky, key] = tube.light(place, &normal);
         let (i, along) = (place.floor() as usize, place.fract() as f32);
         let j = tube.next(i);
         let albedo = std::array::from_fn(|k| colors[i][k] + (colors[j][k] - colors[i][k]) * along);
-        let behind = ((near - hit.depth) / span).clamp(0.0, 1.0) as f32;
         shade(albedo, &normal, Light { sky, key, behind })
     })
 }
@@ -223,7 +250,7 @@ mod tests {
     fn a_tube_covers_its_shadow_and_no_more() {
         let scale = Scale::viridis(0.0, 1.0);
         let tube = Tube::new(&bar(0.0, true), &[0.5; 30], false, 1.0, &scale).unwrap();
-        let picture = draw(&tube, &window()).unwrap();
+        let picture = draw(&tube, &Rods::default(), &window()).unwrap();
         let covered: f64 = picture
             .pixels()
             .iter()
@@ -244,7 +271,7 @@ mod tests {
         let mut values = vec![0.0; 30];
         values.extend([1.0; 30]);
         let tube = Tube::new(&v, &values, false, 1.0, &scale).unwrap();
-        let picture = draw(&tube, &window()).unwrap();
+        let picture = draw(&tube, &Rods::default(), &window()).unwrap();
         let crossing = picture.pixel(30, 30).unwrap();
         // Yellow (value 1) passes over dark violet (value 0).
         assert!(

@@ -59,6 +59,7 @@ fn page(folder: &Path) -> PathBuf {
         results: folder,
         quality: Quality::Draft,
         detail: 0.15,
+        struts: false,
     };
     let done = figures::draw(figures::ALL[0], &context).unwrap();
     let p = provenance::Provenance::collect(&provenance::workspace(), Quality::Draft);

@@ -41,8 +41,14 @@ impl Certificate {
         self.thickness_minrad.min(self.thickness_dcsd)
     }
 
-    /// Examines a closed curve of thickness about 1.
-    pub(crate) fn of(curve: &Polyline, converged: bool) -> Result<Self, KnotError> {
+    /// Examines a closed curve of thickness about 1; `converged` is what its maker says of its length.
+    ///
+    /// # Errors
+    /// Those of [`Invariants::of`].
+    ///
+    /// # Validation
+    /// `all_knots_are_tight`.
+    pub fn of(curve: &Polyline, converged: bool) -> Result<Self, KnotError> {
         let exact = thickness_brute_force(curve);
         let (mut pairs, mut rows) = (Vec::new(), Vec::new());
         rebuild(curve.vertices(), CONTACT, &mut pairs, &mut rows);

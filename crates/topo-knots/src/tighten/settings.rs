@@ -13,6 +13,8 @@ pub struct TightenSettings {
     pub search_vertices: usize,
     /// Random words of the same closed braid from which the search starts too.
     pub n_variants: usize,
+    /// Inversions in spheres around random points from which the search starts too: where the other starts lead to poor minima.
+    pub n_inversions: usize,
     /// Random kicks of each start.
     pub n_kicks_a_start: usize,
     /// Random kicks and squeezes of the best curves of the search.
@@ -32,6 +34,7 @@ impl TightenSettings {
             per_unit: 4.0,
             search_vertices: 150,
             n_variants: 1,
+            n_inversions: 0,
             n_kicks_a_start: 2,
             n_kicks: 4,
             seed: 1,
@@ -99,6 +102,13 @@ impl TightenSettings {
             (
                 "n_variants",
                 self.n_variants as f64,
+                0.0,
+                1000.0,
+                "expected at most 1000",
+            ),
+            (
+                "n_inversions",
+                self.n_inversions as f64,
                 0.0,
                 1000.0,
                 "expected at most 1000",

@@ -19,9 +19,67 @@ const WRITHE: [(&str, f64); 8] = [
     ("7_1", 9.176),
 ];
 
-fn check_all(settings: &TightenSettings, excess_limit: f64, writhe_limit: f64) {
+/// Ideal shapes further from the rule of 4/7 than 0.08, with their writhe: 8_5 has the published length, and 5.714 by the rule.
+const OFF_THE_RULE: [(&str, f64); 1] = [("8_5", 5.619)];
+
+/// Bounds on what tightening comes to.
+struct Bars {
+    /// Excess over the published ropelength of each knot, and its median.
+    excess: [f64; 2],
+    /// Distance of the writhe from the known one.
+    writhe: f64,
+    /// Part of the tension that contacts cannot balance.
+    residual: f64,
+}
+
+/// Writhe of the ideal shape of an alternating prime knot by the rule of 4/7; `None` where the rule does not apply.
+///
+/// ```math
+/// \mathrm{Wr} = \tfrac{4}{7} w_y + \tfrac{10}{7} w_x
+/// ```
+///
+/// Of the writhe w of a reduced alternating diagram the part w_x = -signature is that of the crossings which nullify it, w_y the rest.
+/// The diagram's writhe is the sum of the lowest and highest power of the Jones polynomial and the signature, and the diagram is
+/// alternating if the powers span as much as it has crossings.
+///
+/// # References
+/// `cerf2000`
+fn four_sevenths(knot: &KnotEntry) -> Option<f64> {
+    let jones = knot.jones.as_ref()?;
+    let span = jones.coefficients.len() as i32 - 1;
+    if knot.is_composite() || span != knot.crossing_number as i32 {
+        return None;
+    }
+    let nullifying = -knot.invariants.signature;
+    let rest = 2 * jones.lowest + span + knot.invariants.signature - nullifying;
+    Some(f64::from(4 * rest + 10 * nullifying) / 7.0)
+}
+
+#[test]
+fn the_rule_of_four_sevenths_applies_to_alternating_primes() {
     let table = KnotTable::builtin();
-    let knots: Vec<&KnotEntry> = table.primes_up_to(7).collect();
+    let rule = |name: &str| four_sevenths(table.get(name).expect("known"));
+    for (name, sevenths) in [("3_1", 24.0), ("4_1", 0.0), ("5_1", 44.0), ("5_2", 32.0)] {
+        assert_eq!(rule(name), Some(sevenths / 7.0), "{name}");
+        assert_eq!(rule(&format!("m{name}")), Some(-sevenths / 7.0), "m{name}");
+    }
+    let exempt: Vec<&str> = table
+        .iter()
+        .filter(|knot| four_sevenths(knot).is_none())
+        .map(|knot| knot.name.as_str())
+        .collect();
+    assert_eq!(
+        exempt,
+        [
+            "8_19", "8_20", "8_21", "10_124", "3_1#3_1", "3_1#m3_1", "3_1#4_1"
+        ]
+    );
+}
+
+/// Tightens all primes up to a crossing number and holds them to what is published.
+fn check_all(crossing_number: u32, settings: &TightenSettings, bars: &Bars) {
+    let table = KnotTable::builtin();
+    let knots: Vec<&KnotEntry> = table.primes_up_to(crossing_number).collect();
     let tight: BTreeMap<String, TightKnot> = knots
         .par_iter()
         .map(|knot| {
@@ -31,21 +89,33 @@ fn check_all(settings: &TightenSettings, excess_limit: f64, writhe_limit: f64) {
             )
         })
         .collect();
-    for knot in knots {
+    let mut excesses = Vec::new();
+    for knot in &knots {
         let found = &tight[&knot.name];
         let excess = found.length_over_radius / knot.length_over_radius.expect("published") - 1.0;
-        assert!(
-            (-0.005..excess_limit).contains(&excess),
-            "{}: excess {excess}",
-            knot.name
-        );
+        excesses.push(excess);
         let exact = thickness_brute_force(&found.curve);
         assert!((exact.tau - 1.0).abs() < 1e-9, "{}: {exact:?}", knot.name);
         let certificate = &found.certificate;
+        let writhe = certificate.writhe;
+        let from_rule = four_sevenths(knot).map_or(0.0, |rule| writhe.abs() - rule.abs());
+        println!(
+            "{:5} {:9.4} {:+.3} %, Wr {writhe:+.3}, {from_rule:+.3} from the rule, residual {:.3}, {:.1} s",
+            knot.name,
+            found.length_over_radius,
+            100.0 * excess,
+            certificate.residual,
+            found.cpu_seconds
+        );
+        assert!((-0.005..bars.excess[0]).contains(&excess), "{}", knot.name);
+        match OFF_THE_RULE.iter().find(|(name, _)| *name == knot.name) {
+            Some((_, known)) => assert!((writhe.abs() - known).abs() < 0.02, "{}", knot.name),
+            None => assert!(from_rule.abs() < 0.08, "{}: writhe {writhe}", knot.name),
+        }
         assert!((found.curve.length() - found.length_over_radius).abs() < 1e-6);
         assert!(certificate.thickness_windowed > 1.0 - 1e-9, "{}", knot.name);
         assert!(
-            certificate.converged && certificate.residual < 0.06,
+            certificate.converged && certificate.residual < bars.residual,
             "{}: {certificate:?}",
             knot.name
         );
@@ -53,10 +123,14 @@ fn check_all(settings: &TightenSettings, excess_limit: f64, writhe_limit: f64) {
         assert_eq!(certificate.invariants, knot.invariants, "{}", knot.name);
         assert!(certificate.average_crossing_number > certificate.writhe.abs());
     }
+    excesses.sort_by(f64::total_cmp);
+    let median = excesses[excesses.len() / 2];
+    println!("median excess {:+.3} %", 100.0 * median);
+    assert!(median < bars.excess[1], "median {median}");
     for (name, writhe) in WRITHE {
         let found = tight[name].certificate.writhe;
         assert!(
-            (found.abs() - writhe).abs() < writhe_limit,
+            (found.abs() - writhe).abs() < bars.writhe,
             "{name}: writhe {found}"
         );
     }
@@ -66,13 +140,34 @@ fn check_all(settings: &TightenSettings, excess_limit: f64, writhe_limit: f64) {
 
 #[test]
 fn all_knots_are_tight() {
-    check_all(&TightenSettings::draft(), 0.006, 0.03);
+    let bars = Bars {
+        excess: [0.006, 0.006],
+        writhe: 0.03,
+        residual: 0.06,
+    };
+    check_all(7, &TightenSettings::draft(), &bars);
 }
 
 #[test]
-#[ignore = "long: 1 to 2 minutes"]
+#[ignore = "long: 2 to 3 minutes"]
 fn long_all_knots_are_tight_at_eight_vertices_a_unit() {
-    check_all(&TightenSettings::standard(), 0.0025, 0.01);
+    let bars = Bars {
+        excess: [0.003, 0.001],
+        writhe: 0.01,
+        residual: 0.06,
+    };
+    check_all(8, &TightenSettings::standard(), &bars);
+}
+
+#[test]
+#[ignore = "long: 2 to 3 minutes"]
+fn long_seven_crossings_are_tight_at_sixteen_vertices_a_unit() {
+    let bars = Bars {
+        excess: [0.0002, 0.0001],
+        writhe: 0.01,
+        residual: 0.03,
+    };
+    check_all(7, &TightenSettings::fine(), &bars);
 }
 
 #[test]

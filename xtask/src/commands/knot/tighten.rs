@@ -1,5 +1,6 @@
 //! `cargo xtask knot tighten`: tight shapes with their certificates.
 
+use super::table::{self, Row};
 use crate::cli::{KnotQuality, TightenArgs};
 use crate::error::XtaskError;
 use crate::interrupt;
@@ -12,11 +13,11 @@ use topo_knots::{
     write_curve,
 };
 
-pub(super) fn run(args: &TightenArgs, table: &KnotTable) -> Result<(), XtaskError> {
+pub(super) fn run(args: &TightenArgs, knots: &KnotTable) -> Result<(), XtaskError> {
     super::super::threads(args.jobs)?;
     let stop = interrupt::install();
-    let entries = entries(args, table)?;
-    let settings = settings(args.quality);
+    let entries = entries(args, knots)?;
+    let settings = settings(args);
     let folder = args.out.as_path();
     let cache = folder.join("cache");
     if args.fresh && cache.exists() {
@@ -25,21 +26,21 @@ pub(super) fn run(args: &TightenArgs, table: &KnotTable) -> Result<(), XtaskErro
             source,
         })?;
     }
-    let made: Vec<Result<String, XtaskError>> = entries
+    let made: Vec<Result<Row, XtaskError>> = entries
         .par_iter()
         .with_max_len(1)
         .map(|entry| {
             interrupt::check(&stop)?;
             let tight = ideal(entry, &settings, Some(&cache))?;
-            let line = write(entry, &tight, args, folder)?;
-            println!("{line}");
-            Ok(line)
+            let row = Row::new(entry, &tight, write(entry, &tight, args, folder)?);
+            println!("{}", row.told);
+            Ok(row)
         })
         .collect();
-    for line in made {
-        line?;
-    }
-    println!("curves and certificates: {}", folder.display());
+    let rows = made.into_iter().collect::<Result<Vec<Row>, _>>()?;
+    let text = table::markdown(&rows);
+    write_atomic_bytes(&folder.join("table.md"), text.as_bytes()).map_err(KnotError::from)?;
+    println!("curves, certificates and table: {}", folder.display());
     Ok(())
 }
 
@@ -78,11 +79,16 @@ fn letters(word: &str) -> Result<Vec<i32>, XtaskError> {
         .collect()
 }
 
-fn settings(quality: KnotQuality) -> TightenSettings {
-    match quality {
+fn settings(args: &TightenArgs) -> TightenSettings {
+    let preset = match args.quality {
         KnotQuality::Draft => TightenSettings::draft(),
         KnotQuality::Standard => TightenSettings::standard(),
         KnotQuality::Fine => TightenSettings::fine(),
+    };
+    TightenSettings {
+        n_inversions: args.inversions,
+        seed: args.seed,
+        ..preset
     }
 }
 
@@ -96,7 +102,7 @@ fn write(
     let path = |extension: &str| folder.join(format!("{}.{extension}", tight.name));
     write_curve(&path(&args.format), &tight.curve)?;
     let length = tight.length_over_radius;
-    let excess = entry.length_over_radius.map(|l| 100.0 * (length / l - 1.0));
+    let excess = table::excess(entry, tight);
     let certificate = &tight.certificate;
     let second = args.check.then(|| second_opinion(tight)).transpose()?;
     let apart = second.as_ref().map(|s| s.length_over_radius / length - 1.0);

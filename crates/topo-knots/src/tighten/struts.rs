@@ -1,0 +1,87 @@
+//! Where a tight tube touches itself.
+
+use std::f64::consts::PI;
+
+use topo_core::Polyline;
+use topo_rod::contact::close_pairs;
+
+use crate::segment::closest_points;
+use crate::{V, thickness};
+
+/// Struts of a tight closed curve: the two ends of each on the centreline, the shortest first.
+///
+/// A strut joins strands at most `1 + slack` diameters of the thickest tube apart that are at least half a turn of that tube
+/// (pi radii) apart along the curve. Of struts whose both ends lie within `spacing` edges of those of a shorter one only that is kept, so
+/// that a line of contact is a row of struts.
+///
+/// # Validation
+/// `struts_join_strands_a_diameter_apart`
+///
+/// # References
+/// `ashton2011`
+pub fn struts(curve: &Polyline, slack: f64, spacing: usize) -> Vec<[V; 2]> {
+    let x = curve.vertices();
+    let (n, tau) = (x.len(), thickness(curve).tau);
+    let apart_at_least = PI * tau;
+    let reach = 2.0 * tau * (1.0 + slack);
+    let mut pairs = Vec::new();
+    close_pairs(x, true, reach, &mut pairs);
+    let h = curve.length() / n as f64;
+    let around = |a: usize, b: usize| a.abs_diff(b).min(n - a.abs_diff(b));
+    let mut found: Vec<(f64, usize, usize, [V; 2])> = pairs
+        .iter()
+        .map(|&(i, j)| (i as usize, j as usize))
+        .filter(|&(i, j)| around(i, j) as f64 * h >= apart_at_least)
+        .filter_map(|(i, j)| {
+            let (a, b, c, d) = (x[i], x[(i + 1) % n], x[j], x[(j + 1) % n]);
+            let (square, s, t) = closest_points(&a, &b, &c, &d);
+            let ends = [a + (b - a) * s, c + (d - c) * t];
+            (square < reach * reach).then_some((square, i, j, ends))
+        })
+        .collect();
+    found.sort_by(|p, q| p.0.total_cmp(&q.0));
+    let mut kept: Vec<(usize, usize, [V; 2])> = Vec::new();
+    for (_, i, j, ends) in found {
+        let near = |a: usize, b: usize| around(a, b) <= spacing;
+        let hidden = kept
+            .iter()
+            .any(|&(k, l, _)| near(i, k) && near(j, l) || near(i, l) && near(j, k));
+        if !hidden {
+            kept.push((i, j, ends));
+        }
+    }
+    kept.into_iter().map(|(_, _, ends)| ends).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{KnotTable, TightenSettings, tighten_entry};
+
+    #[test]
+    fn struts_join_strands_a_diameter_apart() {
+        let table = KnotTable::builtin();
+        let settings = TightenSettings {
+            n_variants: 0,
+            n_kicks: 0,
+            ..TightenSettings::draft()
+        };
+        let tight = tighten_entry(table.get("3_1").expect("known"), &settings).expect("tight");
+        let found = struts(&tight.curve, 5e-3, 2);
+        // Nearly every place of a tight trefoil touches, and a row has one strut in three edges.
+        let n = tight.curve.n_edges();
+        assert!(
+            (n / 5..2 * n).contains(&found.len()),
+            "{} of {n}",
+            found.len()
+        );
+        let length = |[a, b]: &[V; 2]| (a - b).norm();
+        assert!(found.windows(2).all(|w| length(&w[0]) <= length(&w[1])));
+        for strut in &found {
+            assert!((2.0 - 1e-9..2.0101).contains(&length(strut)));
+        }
+        // Whatever the size of the curve.
+        let double = tight.curve.scaled(2.0).expect("scaled");
+        assert_eq!(struts(&double, 5e-3, 2).len(), found.len());
+    }
+}
