@@ -72,15 +72,8 @@ pub fn tables(
     estimate::tell(&estimate::of_order(order, &settings)?);
     if order.knots {
         let start = Instant::now();
-        let mut names: Vec<String> = scene.cases(&table)?.into_iter().map(|c| c.knot).collect();
-        names.dedup();
-        // beyond draft the table goes on to eight crossings, at the resolution of the standard preset
-        let more: Vec<String> = if order.quality == Quality::Draft {
-            Vec::new()
-        } else {
-            let primes = table.primes_up_to(8).map(|k| k.name.clone());
-            primes.filter(|k| !names.contains(k)).collect()
-        };
+        let names = knots_of(&scene, &table)?;
+        let more = more_knots(order.quality, &names, &table);
         let progress = Progress::start("knots", names.len() + more.len());
         let told = |event: Event<'_>| {
             if let Event::Knot { name, .. } = event {
@@ -133,6 +126,22 @@ pub fn tables(
             .insert("nematic sweep".to_owned(), start.elapsed().as_secs_f64());
     }
     Ok(())
+}
+
+/// Knots of a scene, each once.
+fn knots_of(scene: &ElasticScene, table: &KnotTable) -> Result<Vec<String>, XtaskError> {
+    let mut names: Vec<String> = scene.cases(table)?.into_iter().map(|c| c.knot).collect();
+    names.dedup();
+    Ok(names)
+}
+
+/// Beyond draft the table of knots goes on to eight crossings, at the resolution of the standard preset.
+fn more_knots(quality: Quality, names: &[String], table: &KnotTable) -> Vec<String> {
+    if quality == Quality::Draft {
+        return Vec::new();
+    }
+    let primes = table.primes_up_to(8).map(|k| k.name.clone());
+    primes.filter(|k| !names.contains(k)).collect()
 }
 
 /// Compares the discharge times of a preset with much finer runs of the same cuts, prints and writes the table.

@@ -35,6 +35,9 @@ pub fn writable(folder: &Path) -> Result<(), AnalysisError> {
 struct CaseMark {
     fingerprint: String,
     versions: Option<Versions>,
+    /// Digests of the other files of the folder; missing in those of early versions.
+    #[serde(default)]
+    files: BTreeMap<String, String>,
 }
 
 #[derive(Deserialize)]
@@ -52,6 +55,18 @@ struct CaseSummary<T> {
 /// Short hash of everything that the numbers of a case depend on.
 pub(crate) fn identity(all: &serde_json::Value) -> String {
     blake3::hash(all.to_string().as_bytes()).to_hex()[..16].to_owned()
+}
+
+/// Digest of a file; `None` if it cannot be read.
+fn digest_of(path: &Path) -> Option<String> {
+    let bytes = std::fs::read(path).ok()?;
+    Some(blake3::hash(&bytes).to_hex()[..16].to_owned())
+}
+
+/// Digests of files of a case, for its `run.json`: a later run sees by them whether all is still there and sound.
+pub(crate) fn digests(folder: &Path, names: &[&str]) -> BTreeMap<String, String> {
+    let one = |name: &&str| Some(((*name).to_owned(), digest_of(&folder.join(name))?));
+    names.iter().filter_map(one).collect()
 }
 
 /// What an earlier run left of a case.
@@ -91,6 +106,7 @@ impl<T> Earlier<T> {
 const CORRUPT: &str = "its run.json is damaged";
 const OTHER_VERSION: &str = "it is of another results version";
 const OTHER_SETTINGS: &str = "it was computed with other settings";
+const DAMAGED_FILE: &str = "one of its files is missing or damaged";
 const NO_ROWS: &str = "its run.json has no rows";
 
 /// What is left of a case in `folder`; usable only with the same identity.
@@ -114,6 +130,11 @@ pub(crate) fn finished<T: DeserializeOwned>(
     }
     if mark.fingerprint != fingerprint {
         return Earlier::Unusable(OTHER_SETTINGS);
+    }
+    let sound =
+        |(name, digest): (&String, &String)| digest_of(&folder.join(name)).as_ref() == Some(digest);
+    if !mark.files.iter().all(sound) {
+        return Earlier::Unusable(DAMAGED_FILE);
     }
     match serde_json::from_str::<CaseSummary<T>>(&text) {
         Ok(summary) if !summary.rows.is_empty() => Earlier::Finished(summary.rows),

@@ -44,6 +44,11 @@ pub fn ideal(
 }
 
 /// File that holds the tight shape of `entry` under `settings`.
+/// Whether [`ideal`] would find the shape in the folder `cache`.
+pub fn is_kept(entry: &KnotEntry, settings: &TightenSettings, cache: &Path) -> bool {
+    cache_path(cache, entry, settings).exists()
+}
+
 fn cache_path(folder: &Path, entry: &KnotEntry, settings: &TightenSettings) -> PathBuf {
     // The debug text of a number reads back to the bit, so nothing that matters is lost.
     let key = format!("{METHOD_VERSION}\n{entry:?}\n{settings:?}");

@@ -25,7 +25,7 @@ pub use curve_file::{
     CurveComponent, CurveFormat, curve_text, read_components, read_curve, write_curve,
 };
 pub use error::KnotError;
-pub use ideal::ideal;
+pub use ideal::{ideal, is_kept};
 pub use identify::{Handedness, KnotType, OpenKnotType, identify, identify_open};
 pub use invariant::{
     Invariants, Jones, alexander_polynomial, determinant, jones_polynomial, signature,

@@ -4,19 +4,32 @@ use super::{Order, preset};
 use crate::error::XtaskError;
 use std::collections::BTreeMap;
 use topo_analysis::{
-    ElasticScene, Estimate, NematicScene, SweepSettings, estimate_nematic_sweep, estimate_sweep,
+    ElasticScene, Estimate, NematicScene, SweepSettings, estimate_nematic_sweep, estimate_shapes,
+    estimate_sweep,
 };
-use topo_knots::KnotTable;
+use topo_knots::{KnotTable, TightenSettings};
 
-/// What the tables of an order are expected to take, by stage; the start shapes and the drawing are not counted.
+/// What the tables of an order are expected to take, by stage; the drawing is not counted.
 pub fn of_order(
     order: &Order,
     settings: &SweepSettings,
 ) -> Result<BTreeMap<&'static str, Estimate>, XtaskError> {
     let mut stages = BTreeMap::new();
+    let table = KnotTable::builtin();
+    let scene = ElasticScene::published(preset(order.quality));
+    if order.elastic || order.knots {
+        let shapes = |names: &[String], tighten| {
+            estimate_shapes(names, &table, tighten, order.results, order.jobs)
+        };
+        let names = super::knots_of(&scene, &table)?;
+        let mut all = shapes(&names, &scene.tighten)?;
+        if order.knots {
+            let more = super::more_knots(order.quality, &names, &table);
+            all = all.then(shapes(&more, &TightenSettings::standard())?);
+        }
+        stages.insert("tight shapes", all);
+    }
     if order.elastic {
-        let scene = ElasticScene::published(preset(order.quality));
-        let table = KnotTable::builtin();
         stages.insert("elastic", estimate_sweep(&scene, &table, settings)?);
         let mut variants = Estimate::default();
         for variant in scene.variants() {

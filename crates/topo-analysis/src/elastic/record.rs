@@ -9,7 +9,7 @@ use topo_rod::{ChargedRod, Guards, RodSample, energy_density};
 
 use super::case::{CaseJob, FollowedCut, RESULTS_VERSION, fingerprint};
 use crate::AnalysisError;
-use crate::folder::make_folder;
+use crate::folder::{digests, make_folder};
 use crate::table::{SweepRow, write_table};
 use crate::timeline::Timeline;
 
@@ -237,6 +237,7 @@ pub(super) fn write_case(made: &MadeCase<'_>, folder: &Path) -> Result<(), Analy
         "charge": charged.record().report,
         "cuts": cuts,
         "rows": rows,
+        "files": digests(folder, &["charged.csv", "charge.csv", "series.csv", "snapshots.csv"]),
         "warnings": rows.iter().map(|r| &r.warnings).filter(|w| !w.is_empty()).collect::<Vec<_>>(),
         "timings": { "charge_cpu_seconds": charge_seconds, "cpu_seconds": rows.iter().map(|r| r.cpu_seconds).sum::<f64>() },
     });

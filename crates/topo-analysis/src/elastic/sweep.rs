@@ -325,6 +325,24 @@ mod tests {
             assert!(told.len() == 1 && told[0].1 == 1, "{told:?}");
             assert!(told[0].0.contains(reason), "{told:?}");
         }
+        for (file, left) in [
+            ("snapshots.csv", None),
+            ("series.csv", Some("cut,time\n1,")),
+        ] {
+            let path = case.join(file);
+            let whole = std::fs::read(&path).unwrap();
+            match left {
+                None => std::fs::remove_file(&path).unwrap(),
+                Some(text) => std::fs::write(&path, text).unwrap(),
+            }
+            let (rows, told) = sweep(&scene);
+            assert_eq!(rows, first);
+            assert!(
+                told.len() == 1 && told[0].0.contains("missing or damaged"),
+                "{told:?}"
+            );
+            assert!(std::fs::read(&path).unwrap() == whole);
+        }
         let mut other = scene.clone();
         other.accuracy.tolerance = 2e-2;
         let (_, told) = sweep(&other);

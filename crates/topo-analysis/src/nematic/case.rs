@@ -17,7 +17,7 @@ use super::scene::{NematicCase, NematicScene};
 use super::snapshot::{Kept, RING_ORDER, centre};
 use super::table::{NematicRow, NematicSample};
 use crate::AnalysisError;
-use crate::folder::{identity, make_folder};
+use crate::folder::{digests, identity, make_folder};
 use crate::table::{push_warning, write_table};
 use crate::times::DischargeTimes;
 
@@ -273,6 +273,7 @@ impl CaseRun<'_> {
             "discharge": run.record.report,
             "ledger_residual": run.record.report.ledger_residual,
             "rows": [row],
+            "files": digests(folder, &["lines.csv", "ring.csv", "slices.csv", "series.csv"]),
             "warnings": row.warnings,
             "timings": { "cpu_seconds": row.cpu_seconds },
         });
