@@ -225,11 +225,11 @@ const CHARGE_SECONDS: f64 = 0.2;
 /// The same of a discharge.
 const DISCHARGE_SECONDS: f64 = 0.6;
 /// Growth with the number of edges.
-const EDGES_POWER: f64 = 1.3;
+const EDGES_POWER: f64 = 1.5;
 /// Growth with the inverse of the tolerance.
 const TOLERANCE_POWER: f64 = 0.5;
 /// Near-tied cuts of a case, on average over the published sweep.
-const MEAN_NEAR_TIES: f64 = 4.4;
+const MEAN_NEAR_TIES: f64 = 4.5;
 /// Bytes that a case holds at N = 200.
 const BYTES: f64 = 6e7;
 
