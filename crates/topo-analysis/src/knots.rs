@@ -53,33 +53,35 @@ pub fn tight_shapes(
     Ok(made.into_iter().flatten().collect())
 }
 
-/// What [`tight_shapes`] is expected to take for those of the knots that are not kept below `out`.
-///
-/// # Errors
-/// An unknown knot.
-pub fn estimate_shapes(
-    names: &[String],
-    table: &KnotTable,
-    settings: &TightenSettings,
-    out: &Path,
-    jobs: usize,
-) -> Result<Estimate, AnalysisError> {
-    let cache = knots_folder(out).join("cache");
-    // searches of the fine preset are longer; levels finer than four a unit cost by their vertices
-    let searches = 1.0 + settings.n_kicks as f64 / 4.0;
-    let levels = (settings.per_unit / 4.0).powf(LEVEL_POWER);
-    let mut costs = Vec::new();
-    for name in names {
-        let entry = table.get(name)?;
-        if !is_kept(entry, settings, &cache) {
-            let size = (f64::from(entry.crossing_number) / 6.0).powf(CROSSINGS_POWER);
-            costs.push(Cost {
-                seconds: size * (SEARCH_SECONDS * searches + LEVEL_SECONDS * levels),
-                bytes: SHAPE_BYTES,
-            });
+impl Estimate {
+    /// What [`tight_shapes`] is expected to take for those of the knots that are not kept below `out`.
+    ///
+    /// # Errors
+    /// An unknown knot.
+    pub fn of_shapes(
+        names: &[String],
+        table: &KnotTable,
+        settings: &TightenSettings,
+        out: &Path,
+        jobs: usize,
+    ) -> Result<Self, AnalysisError> {
+        let cache = knots_folder(out).join("cache");
+        // searches of the fine preset are longer; levels finer than four a unit cost by their vertices
+        let searches = 1.0 + settings.n_kicks as f64 / 4.0;
+        let levels = (settings.per_unit / 4.0).powf(LEVEL_POWER);
+        let mut costs = Vec::new();
+        for name in names {
+            let entry = table.get(name)?;
+            if !is_kept(entry, settings, &cache) {
+                let size = (f64::from(entry.crossing_number) / 6.0).powf(CROSSINGS_POWER);
+                costs.push(Cost {
+                    seconds: size * (SEARCH_SECONDS * searches + LEVEL_SECONDS * levels),
+                    bytes: SHAPE_BYTES,
+                });
+            }
         }
+        Ok(estimate(&costs, Speed::of(&[]), threads(jobs), true))
     }
-    Ok(estimate(&costs, Speed::of(&[]), threads(jobs), true))
 }
 
 /// Growth with the number of crossings.

@@ -29,7 +29,7 @@ pub use elastic::{
 };
 pub use error::AnalysisError;
 pub use folder::writable;
-pub use knots::{Shapes, estimate_shapes, knots_folder, tight_shapes, write_knots};
+pub use knots::{Shapes, knots_folder, tight_shapes, write_knots};
 pub use nematic::{
     FieldSnapshot, LinePoint, NEMATIC_SHARES, NematicCase, NematicFrame, NematicReport,
     NematicResonance, NematicRow, NematicSample, NematicScene, SlicePoint, buckling,

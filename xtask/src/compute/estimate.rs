@@ -4,8 +4,7 @@ use super::{Order, preset};
 use crate::error::XtaskError;
 use std::collections::BTreeMap;
 use topo_analysis::{
-    ElasticScene, Estimate, NematicScene, SweepSettings, estimate_nematic_sweep, estimate_shapes,
-    estimate_sweep,
+    ElasticScene, Estimate, NematicScene, SweepSettings, estimate_nematic_sweep, estimate_sweep,
 };
 use topo_knots::{KnotTable, TightenSettings};
 
@@ -19,7 +18,7 @@ pub fn of_order(
     let scene = ElasticScene::published(preset(order.quality));
     if order.elastic || order.knots {
         let shapes = |names: &[String], tighten| {
-            estimate_shapes(names, &table, tighten, order.results, order.jobs)
+            Estimate::of_shapes(names, &table, tighten, order.results, order.jobs)
         };
         let names = super::knots_of(&scene, &table)?;
         let mut all = shapes(&names, &scene.tighten)?;
