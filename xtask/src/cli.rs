@@ -41,6 +41,12 @@ pub enum Command {
   cargo xtask accuracy                       the draft preset
   cargo xtask accuracy --quality standard")]
     Accuracy(AccuracyArgs),
+    /// Drive rods, nematics and the knot generator to their extremes: maps of what converges and why the rest stops.
+    #[command(after_help = "Examples:
+  cargo xtask stability                       all maps, draft: minutes
+  cargo xtask stability --only nematic        those of one system
+  cargo xtask stability --quality standard    every run to its very end")]
+    Stability(StabilityArgs),
     /// Compare the numbers of two results folders to the byte, but for what tells how long they took.
     #[command(after_help = "Example:
   cargo xtask compare results results-again")]
@@ -160,6 +166,19 @@ pub enum ExportFormat {
     Nemaktis,
     /// All of them.
     All,
+}
+
+/// Options of `stability`.
+#[derive(Debug, Args)]
+pub struct StabilityArgs {
+    /// Only this system (rod, nematic, knots); may be given several times.
+    #[arg(long, value_name = "SYSTEM", value_parser = ["rod", "nematic", "knots"])]
+    pub only: Vec<String>,
+    /// How long each run is followed: draft or standard.
+    #[arg(long, value_enum, default_value_t = Quality::Draft)]
+    pub quality: Quality,
+    #[command(flatten)]
+    pub work: WorkArgs,
 }
 
 /// Options of `compare`.

@@ -10,6 +10,7 @@ mod figures;
 mod knot;
 mod packages;
 mod run;
+mod stability;
 mod test;
 
 use crate::cli::{Cli, Command, WorkArgs};
@@ -23,6 +24,7 @@ pub fn dispatch(cli: Cli) -> Result<(), XtaskError> {
         Command::Figures(args) => figures::run(&args),
         Command::Run(args) => run::run(&args),
         Command::Accuracy(args) => accuracy::run(&args),
+        Command::Stability(args) => stability::run(&args),
         Command::Compare(args) => compare::run(&args),
         Command::Export(args) => export::run(&args),
         Command::Knot(args) => knot::run(&args),

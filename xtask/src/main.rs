@@ -15,6 +15,7 @@ mod progress;
 mod provenance;
 mod reproduction;
 mod scenes;
+mod stability;
 #[cfg(test)]
 mod synthetic;
 mod viewer;

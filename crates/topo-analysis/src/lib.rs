@@ -15,6 +15,7 @@ mod knots;
 mod nematic;
 mod progress;
 mod scene;
+mod stability;
 mod statistics;
 mod table;
 mod timeline;
@@ -37,6 +38,7 @@ pub use nematic::{
 };
 pub use progress::{Event, Shard, SweepSettings, with_jobs};
 pub use scene::Scene;
+pub use stability::{Effort, ExtremeSystem, StabilityRow, n_extremes, stability};
 pub use statistics::{Spread, median, quantile};
 pub use table::{KnotRow, SweepRow, read_table, write_table};
 pub use timeline::{Timeline, TimelineSettings, TypedSample, UNKNOT};

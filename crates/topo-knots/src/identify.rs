@@ -7,7 +7,7 @@ mod reduce;
 
 use serde::{Deserialize, Serialize};
 
-use crate::invariant::{Diagram, check_vertices, least_crossing};
+use crate::invariant::{Diagram, least_crossing, usable_vertices};
 use crate::{Invariants, Jones, KnotError, KnotTable, V};
 use known::{Finding, matches};
 use reduce::Reducer;
@@ -138,9 +138,9 @@ const UNKNOT: &str = "0_1";
 /// # References
 /// `koniaris1991`
 pub fn identify(vertices: &[V], table: &KnotTable) -> Result<KnotType, KnotError> {
-    check_vertices(vertices, true)?;
+    let vertices = usable_vertices(vertices, true)?;
     let mut reducer = Reducer::default();
-    reducer.load(vertices, true);
+    reducer.load(&vertices, true);
     classify(&mut reducer, table, Care::Handed)
 }
 

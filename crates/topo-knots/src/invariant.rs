@@ -11,7 +11,7 @@ use crate::{KnotError, V};
 
 pub(crate) use diagram::Diagram;
 pub use jones::Jones;
-pub(crate) use projection::{check_vertices, fibonacci_directions, least_crossing};
+pub(crate) use projection::{fibonacci_directions, least_crossing, usable_vertices};
 
 /// Directions tried for the projection with the fewest crossings.
 const N_PROJECTIONS: usize = 30;
@@ -135,15 +135,11 @@ fn at_minus_one(alexander: &[i64]) -> u64 {
 
 /// The simplified diagram of the projection with the fewest crossings.
 fn diagram(vertices: &[V]) -> Result<Diagram, KnotError> {
-    check_vertices(vertices, true)?;
-    let reduced;
-    let vertices = if vertices.len() > LONGEST_PROJECTED {
-        reduced = shortened(vertices);
-        &reduced
-    } else {
-        vertices
-    };
-    let mut diagram = least_crossing(vertices, N_PROJECTIONS, 0).ok_or(KnotError::Degenerate)?;
+    let mut vertices = usable_vertices(vertices, true)?;
+    if vertices.len() > LONGEST_PROJECTED {
+        vertices = shortened(&vertices).into();
+    }
+    let mut diagram = least_crossing(&vertices, N_PROJECTIONS, 0).ok_or(KnotError::Degenerate)?;
     diagram.simplify();
     Ok(diagram)
 }

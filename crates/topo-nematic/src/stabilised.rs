@@ -168,6 +168,11 @@ impl<T: Real> Stabilised<T> {
         self.rate_known = false;
     }
 
+    /// The field at the last trial.
+    pub(crate) fn candidate(&self) -> &[T] {
+        &self.last
+    }
+
     /// Sum of squares of the molecular field at the last trial.
     pub(crate) fn candidate_square(&self) -> f64 {
         self.end_square

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::reduce::{Ray, Reducer};
 use super::{Care, classify};
-use crate::invariant::{check_vertices, fibonacci_directions};
+use crate::invariant::{fibonacci_directions, usable_vertices};
 use crate::{KnotError, KnotTable, V};
 
 /// Radius of the sphere of closing points, in units of the radius of the curve.
@@ -55,7 +55,7 @@ pub fn identify_open(
     seed: u64,
     table: &KnotTable,
 ) -> Result<OpenKnotType, KnotError> {
-    check_vertices(vertices, false)?;
+    let vertices = &*usable_vertices(vertices, false)?;
     if n_closures == 0 {
         let expected = "at least one closure is needed, 32 is usual";
         return Err(KnotError::Setting {

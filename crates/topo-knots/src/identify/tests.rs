@@ -393,3 +393,25 @@ fn repeated_and_collinear_vertices_do_no_harm() {
     }
     assert_eq!(identify(&x, &table).expect("a knot").label(), "3_1");
 }
+
+#[test]
+fn size_does_not_matter() {
+    let table = KnotTable::builtin();
+    let trefoil = |scale: f64| -> Vec<V> {
+        (0..90)
+            .map(|k| {
+                let u = std::f64::consts::TAU * f64::from(k) / 90.0;
+                let r = 2.0 + (3.0 * u).cos();
+                V::new(r * (2.0 * u).cos(), r * (2.0 * u).sin(), -(3.0 * u).sin()) * scale
+            })
+            .collect()
+    };
+    for scale in [1e-300, 1e-90, 1e-31, 1.0, 1e31, 1e90, 1e307] {
+        let curve = trefoil(scale);
+        let kind = identify(&curve, &table).unwrap();
+        assert_eq!(kind.names, ["3_1"], "{scale:e}");
+        assert_eq!(crate::determinant(&curve).unwrap(), 3, "{scale:e}");
+        let open = crate::identify_open(&curve[..89], 8, 1, &table).unwrap();
+        assert!(open.n_closures == 8, "{scale:e}");
+    }
+}

@@ -1,5 +1,7 @@
 //! Knot diagrams by projecting a closed polygon along a direction.
 
+use std::borrow::Cow;
+
 use super::diagram::{Diagram, Visit};
 use crate::{KnotError, V};
 
@@ -17,21 +19,32 @@ pub(crate) fn fibonacci_directions(n: usize, seed: u64) -> impl Iterator<Item = 
     })
 }
 
-/// Refuses curves with too few or non-finite vertices.
-pub(crate) fn check_vertices(vertices: &[V], closed: bool) -> Result<(), KnotError> {
+/// Coordinates whose third powers, and fourth ones of their differences, are far from overflow and underflow.
+const TAME: std::ops::Range<f64> = 1e-30..1e30;
+
+/// Refuses curves with too few or non-finite vertices; curves of outlandish size are scaled by a power of two.
+pub(crate) fn usable_vertices(vertices: &[V], closed: bool) -> Result<Cow<'_, [V]>, KnotError> {
     let least = if closed { 3 } else { 2 };
     if vertices.len() < least {
         return Err(KnotError::TooFewVertices {
             n_vertices: vertices.len(),
         });
     }
-    match vertices
-        .iter()
-        .position(|x| !x.iter().all(|c| c.is_finite()))
-    {
-        Some(vertex) => Err(KnotError::NotFinite { vertex }),
-        None => Ok(()),
+    let mut size = 0.0_f64;
+    for (vertex, x) in vertices.iter().enumerate() {
+        if !x.iter().all(|c| c.is_finite()) {
+            return Err(KnotError::NotFinite { vertex });
+        }
+        size = size.max(x.amax());
     }
+    if size == 0.0 || TAME.contains(&size) {
+        return Ok(Cow::Borrowed(vertices));
+    }
+    // In two steps: 2^1074 itself is beyond the largest number.
+    let half = (-0.5 * size.log2()).round().exp2();
+    Ok(Cow::Owned(
+        vertices.iter().map(|x| x * half * half).collect(),
+    ))
 }
 
 /// The diagram with the fewest crossings among `n_directions` projections; none if all are degenerate.
@@ -232,12 +245,12 @@ mod tests {
     #[test]
     fn bad_coordinates_are_refused() {
         assert!(matches!(
-            check_vertices(&[V::zeros(); 2], true),
+            usable_vertices(&[V::zeros(); 2], true),
             Err(KnotError::TooFewVertices { n_vertices: 2 })
         ));
         let nan = [V::zeros(), V::x(), V::new(0.0, f64::NAN, 0.0)];
         assert!(matches!(
-            check_vertices(&nan, true),
+            usable_vertices(&nan, true),
             Err(KnotError::NotFinite { vertex: 2 })
         ));
     }

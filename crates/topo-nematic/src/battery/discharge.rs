@@ -17,7 +17,8 @@ use crate::memory::ByteAccount;
 use crate::real::Real;
 use crate::stabilised::Stabilised;
 use crate::{
-    EnergyParts, FlowParameters, NematicError, NematicState, Precision, order_parameter, ring,
+    Drive, EnergyParts, FlowParameters, NematicError, NematicState, Precision, order_parameter,
+    ring,
 };
 
 /// How far a discharge is followed and how often it is looked at.
@@ -75,6 +76,9 @@ impl Discharge {
 const SCHEMA: &str = "nematic-discharge/3";
 /// First step, in h²/(Gamma L).
 const FIRST_STEP: f64 = 1e-3;
+
+/// Largest rise of the energy in a step, relative: the velocity that a step is taken with may have grown too old.
+const MOST_RISE: f64 = 1e-6;
 
 /// A discharge that is not finished.
 #[derive(Clone, Serialize, Deserialize)]
@@ -224,6 +228,17 @@ impl SwitchedNematic {
             // The rate at a checkpoint was counted before it was written.
             field.counters = run.counters;
         }
+        // Plates and body forces do work on the director through the fluid.
+        let is_driven = settings
+            .flow
+            .is_some_and(|flow| flow.drive != Drive::default());
+        // Rounding of the field shows in its distortion, that of the sums in all of the bulk.
+        let rounding = match accuracy.precision {
+            Precision::Double => f64::EPSILON,
+            Precision::Single => f64::from(f32::EPSILON),
+        };
+        let bulk = material.reference_density().abs() * kernel.domain.total_mass * h * h * h;
+        let noise = 16.0 * (rounding * start.abs() + f64::EPSILON * bulk);
         let stop = loop {
             if run.curve.time().last().is_none_or(|last| run.time > *last) {
                 let dissipated = [0, 1].map(|c| run.ledger.dissipated(c));
@@ -287,10 +302,17 @@ impl SwitchedNematic {
             }
             let result = field.try_step(&kernel, dt, extra(&flow)).and_then(|error| {
                 let error = error / material.order().max(1e-3);
-                run.control.judge(error).map(|()| error)
+                run.control.judge(error)?;
+                let next = kernel.energy(field.candidate());
+                let rise = next.total() - energy.total();
+                if !is_driven && rise > MOST_RISE * energy.total().abs() + noise {
+                    let relative = rise / energy.total().abs();
+                    return Err(Rejection::EnergyRise { relative });
+                }
+                Ok((error, next))
             });
             match result {
-                Ok(error) => {
+                Ok((error, next)) => {
                     let dissipated = power_unit
                         * dt
                         * mean_power(field.square_of_field, field.candidate_square());
@@ -303,7 +325,7 @@ impl SwitchedNematic {
                         let after = flow.coupling.power();
                         run.ledger.dissipate(1, dt * mean_power(before, after));
                     }
-                    energy = kernel.energy(&field.q);
+                    energy = next;
                     run.ledger.set_stored(&energy.as_array());
                     run.control.accept(dt, error, 3);
                     run.time = if dt < remaining { run.time + dt } else { until };

@@ -1,0 +1,91 @@
+//! `cargo xtask stability`: runs at the extremes, as tables, maps and a report.
+
+use std::time::Instant;
+
+use super::threads;
+use crate::cli::StabilityArgs;
+use crate::error::XtaskError;
+use crate::figures::Quality;
+use crate::progress::Progress;
+use crate::{data, interrupt, stability};
+use topo_analysis::{
+    Effort, ExtremeSystem, StabilityRow, n_extremes, read_table, with_jobs, write_table,
+};
+
+pub fn run(args: &StabilityArgs) -> Result<(), XtaskError> {
+    let effort = match args.quality {
+        Quality::Draft => Effort::Draft,
+        Quality::Standard => Effort::Standard,
+        Quality::Paper => {
+            return Err(XtaskError::Argument {
+                key: "--quality",
+                value: "paper".to_owned(),
+                remedy: "maps are made at draft or standard".to_owned(),
+            });
+        }
+    };
+    let jobs = threads(args.work.jobs)?;
+    let stop = interrupt::install();
+    let folder = args.work.out.join("stability");
+    std::fs::create_dir_all(&folder).map_err(|source| XtaskError::File {
+        path: folder.clone(),
+        source,
+    })?;
+    let mut maps = Vec::new();
+    for system in ExtremeSystem::ALL {
+        if !args.only.is_empty() && !args.only.iter().any(|name| name == system.name()) {
+            continue;
+        }
+        let start = Instant::now();
+        let kept =
+            folder.join(format!("{}-{}.part.csv", system.name(), args.quality).to_lowercase());
+        let known: Vec<StabilityRow> = if kept.exists() && !args.work.fresh {
+            read_table(&kept)?
+        } else {
+            Vec::new()
+        };
+        let n_runs = n_extremes(system);
+        let progress = Progress::start(system.name(), n_runs);
+        let told = |row: &StabilityRow| {
+            progress.done(&format!(
+                "{} = {}, {} = {}",
+                row.axis_x, row.x, row.axis_y, row.y
+            ));
+        };
+        let rows = with_jobs(jobs, || {
+            topo_analysis::stability(system, effort, &known, &stop, &told)
+        })?;
+        if rows.len() < n_runs {
+            write_table(&kept, &rows)?;
+            return Err(XtaskError::Interrupted);
+        }
+        progress.finish();
+        write_table(&folder.join(format!("{}.csv", system.name())), &rows)?;
+        let picture = stability::draw(&rows)?;
+        for (extension, bytes) in [("png", &picture.png[..]), ("svg", picture.svg.as_bytes())] {
+            data::write(
+                &folder.join(format!("{}.{extension}", system.name())),
+                bytes,
+            )?;
+        }
+        // Only there after an interrupt.
+        drop(std::fs::remove_file(&kept));
+        let wall = start.elapsed().as_secs_f64();
+        println!("{}", stability::summary(system.name(), &rows, wall));
+        maps.push((system.name(), rows));
+    }
+    if args.only.is_empty() {
+        let report = stability::report(args.quality, &maps);
+        data::write(&folder.join("stability.md"), report.as_bytes())?;
+        println!("report: {}", folder.join("stability.md").display());
+    }
+    // Rows carry where runs must converge.
+    let broken: usize = maps.iter().map(|(_, rows)| stability::n_broken(rows)).sum();
+    if broken > 0 {
+        return Err(XtaskError::Step(format!(
+            "{broken} runs broke a rule; see the tables in {}",
+            folder.display()
+        )));
+    }
+    Ok(())
+}
