@@ -90,6 +90,9 @@ pub struct FiguresArgs {
     /// Compute part I of N only and draw nothing; each part may run anywhere.
     #[arg(long, value_name = "I/N")]
     pub shard: Option<Shard>,
+    /// Draw the tight knots of `knots-table` as thin tubes with their struts.
+    #[arg(long)]
+    pub struts: bool,
     #[command(flatten)]
     pub work: WorkArgs,
 }

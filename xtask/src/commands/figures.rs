@@ -43,7 +43,7 @@ pub fn run(args: &FiguresArgs) -> Result<(), XtaskError> {
         results,
         quality: args.quality,
         detail: 1.0,
-        struts: false,
+        struts: args.struts,
     };
     let progress = Progress::start("drawing", chosen.len());
     let mut done: Vec<Done> = Vec::new();
