@@ -39,7 +39,7 @@ fn page_adds_nine_forty_two() {
         assert!(run.status.success(), "{command}: {complaint}");
         outputs.push(text);
     }
-    let [shown, tightened, named] = &outputs[..] else {
+    let [shown, tightened, _searched, named] = &outputs[..] else {
         panic!("{} commands on the page", outputs.len())
     };
     assert!(shown.contains("69.4756 (ashton2011)"), "{shown}");
