@@ -57,10 +57,10 @@ pub fn n_broken(rows: &[StabilityRow]) -> usize {
 }
 
 /// One line on a system.
-pub fn summary(system: &str, rows: &[StabilityRow], wall: f64) -> String {
+pub fn summary(system: &str, rows: &[StabilityRow], time: &str) -> String {
     let n = |f: fn(&StabilityRow) -> bool| rows.iter().filter(|r| f(r)).count();
     format!(
-        "{system}: {} runs, {} converged, {} stopped with a reason; {} of {} converged where all must; {} violations; {wall:.0} s",
+        "{system}: {} runs, {} converged, {} stopped with a reason; {} of {} converged where all must; {} violations; {time}",
         rows.len(),
         n(StabilityRow::has_converged),
         n(|r| !r.has_converged()),
@@ -196,7 +196,7 @@ pub fn report(quality: Quality, maps: &[(&str, Vec<StabilityRow>)]) -> String {
         let seconds: f64 = rows.iter().map(|r| r.seconds).sum();
         put(format!(
             "{}\n",
-            summary(system, rows, seconds).replace(" s", " CPU seconds")
+            summary(system, rows, &format!("{seconds:.0} CPU seconds"))
         ));
         put("| along x | along y | runs | converged | inner converged | violations | why runs stopped |".to_owned());
         put("|---|---|---|---|---|---|---|".to_owned());

@@ -12,6 +12,9 @@ use topo_analysis::{
     Effort, ExtremeSystem, StabilityRow, n_extremes, read_table, with_jobs, write_table,
 };
 
+/// Changes with whatever changes the outcome of a run.
+const VERSION: u32 = 1;
+
 pub fn run(args: &StabilityArgs) -> Result<(), XtaskError> {
     let effort = match args.quality {
         Quality::Draft => Effort::Draft,
@@ -37,8 +40,9 @@ pub fn run(args: &StabilityArgs) -> Result<(), XtaskError> {
             continue;
         }
         let start = Instant::now();
-        let kept =
-            folder.join(format!("{}-{}.part.csv", system.name(), args.quality).to_lowercase());
+        // Runs of another version or quality are not taken for these.
+        let kept = format!("{}-{}-v{VERSION}.runs.csv", system.name(), args.quality);
+        let kept = folder.join(kept.to_lowercase());
         let known: Vec<StabilityRow> = if kept.exists() && !args.work.fresh {
             read_table(&kept)?
         } else {
@@ -55,8 +59,8 @@ pub fn run(args: &StabilityArgs) -> Result<(), XtaskError> {
         let rows = with_jobs(jobs, || {
             topo_analysis::stability(system, effort, &known, &stop, &told)
         })?;
+        write_table(&kept, &rows)?;
         if rows.len() < n_runs {
-            write_table(&kept, &rows)?;
             return Err(XtaskError::Interrupted);
         }
         progress.finish();
@@ -68,10 +72,8 @@ pub fn run(args: &StabilityArgs) -> Result<(), XtaskError> {
                 bytes,
             )?;
         }
-        // Only there after an interrupt.
-        drop(std::fs::remove_file(&kept));
-        let wall = start.elapsed().as_secs_f64();
-        println!("{}", stability::summary(system.name(), &rows, wall));
+        let wall = format!("{:.0} s", start.elapsed().as_secs_f64());
+        println!("{}", stability::summary(system.name(), &rows, &wall));
         maps.push((system.name(), rows));
     }
     if args.only.is_empty() {

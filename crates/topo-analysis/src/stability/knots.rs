@@ -89,8 +89,8 @@ fn named(curve: Result<Polyline, String>, expected: &str) -> Verdict {
 pub(super) fn cells(effort: Effort) -> Vec<Cell> {
     let mut cells = Vec::new();
     for strands in [2, 3, 4, 5, 6] {
-        // Twelve letters are the diagrams of knots of up to twelve crossings.
-        for least in [7, 10, 12, 20, 30, 60] {
+        // Words of twelve letters are diagrams of knots of up to twelve crossings.
+        for least in [7, 9, 11, 13, 15, 60] {
             let settings = quick(effort);
             // Only an even number of letters on an odd number of strands closes to a knot, and the converse.
             let letters = least + (least + strands as usize + 1) % 2;

@@ -248,7 +248,7 @@ pub(super) fn cells(effort: Effort) -> Vec<Cell> {
             let case = Case {
                 edge,
                 anchoring,
-                is_inner: edge >= 3.5,
+                is_inner: edge >= 4.0,
                 ..middle()
             };
             let at = [format!("{edge:.2}"), name.to_owned()];
