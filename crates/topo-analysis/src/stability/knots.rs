@@ -13,6 +13,10 @@ use super::{Cell, Effort, Verdict};
 
 type V = Vector3<f64>;
 
+/// Letters beyond which a word is tightened for a few steps only: whether it is still the same knot is what counts.
+const LONG: usize = 20;
+const LONG_STEPS: usize = 6;
+
 /// Settings of a quick tightening.
 fn quick(effort: Effort) -> TightenSettings {
     let draft = TightenSettings {
@@ -91,7 +95,10 @@ pub(super) fn cells(effort: Effort) -> Vec<Cell> {
     for strands in [2, 3, 4, 5, 6] {
         // Words of twelve letters are diagrams of knots of up to twelve crossings.
         for least in [7, 9, 11, 13, 15, 60] {
-            let settings = quick(effort);
+            let mut settings = quick(effort);
+            if least > LONG {
+                settings.max_steps = LONG_STEPS;
+            }
             // Only an even number of letters on an odd number of strands closes to a knot, and the converse.
             let letters = least + (least + strands as usize + 1) % 2;
             cells.push(Cell {
