@@ -11,6 +11,7 @@ use crate::plot::canvas::Canvas;
 use crate::plot::color::{QUIET, Rgb, Scale};
 use crate::plot::panel::{Axis, Panel};
 use crate::plot::solids::{Solids, view};
+use crate::plot::style::Style;
 use nalgebra::Vector3;
 use topo_analysis::buckling;
 
@@ -22,6 +23,24 @@ const UNKNOWN: Rgb = [150, 150, 150];
 /// Colours of the profile angle, from +1/2 (0 degrees) over twisted (90) to −1/2 (180).
 pub fn profile_scale() -> Scale {
     Scale::viridis(0.0, 180.0)
+}
+
+/// Flat colour bar of the profile angle, labelled below at a size of type.
+pub fn profile_bar(canvas: &mut Canvas, at: [f64; 2], size: [f64; 2], type_size: f64) {
+    const N: usize = 60;
+    let scale = profile_scale();
+    let width = size[0] / N as f64;
+    for k in 0..N {
+        let angle = scale.value((k as f64 + 0.5) / N as f64);
+        let x = at[0] + width * k as f64;
+        // A little wider, so that no gap shines through.
+        canvas.rect([x, at[1]], [width + 0.3, size[1]], &scale.css(angle));
+    }
+    let style = Style::default().middle().size(type_size);
+    let line = at[1] + size[1] + 1.1 * type_size;
+    for (part, label) in [(0.0, "+½"), (0.5, "twisted"), (1.0, "−½")] {
+        canvas.text(at[0] + size[0] * part, line, label, style);
+    }
 }
 
 /// The particle, coloured from blue to yellow by the horizontal component cos qφ sin θ of its anchoring.

@@ -5,7 +5,7 @@ use crate::data::{DefectLine, Slice};
 use crate::error::XtaskError;
 use crate::figures::Quality;
 use crate::figures::nematic::slice::{self, Look};
-use crate::figures::nematic::{colloid_at, profile_scale};
+use crate::figures::nematic::{colloid_at, profile_bar};
 use crate::figures::series::line_path;
 use crate::plot::canvas::Canvas;
 use crate::plot::color::{INK, QUIET, Scale, VERMILION};
@@ -156,7 +156,7 @@ impl Play {
         let solids = colloid_at(self.radius, q, &lines, Some(&shot.plane), [azimuth, 20.0]);
         let unit = (470.0 / (2.0 * half_x)).min(440.0 / (2.0 * half_z));
         canvas.solids([0.0, 60.0], [480.0, 470.0], [0.0, 0.0], unit, &solids)?;
-        self.bar(canvas, [150.0, 540.0]);
+        profile_bar(canvas, [150.0, 540.0], [180.0, 9.0], 13.0);
 
         let scale = Scale::diverging((0.7 * shot.vorticity).max(1e-30));
         let look = Look {
@@ -180,21 +180,6 @@ impl Play {
         canvas.text(720.0, 548.0, &told, style);
         self.energy(canvas, now, time, last);
         Ok(())
-    }
-
-    /// Colours of the ring's cross-section.
-    fn bar(&self, canvas: &mut Canvas, at: [f64; 2]) {
-        const N: usize = 60;
-        let (width, scale) = (180.0, profile_scale());
-        for k in 0..N {
-            let x = at[0] + width * k as f64 / N as f64;
-            let angle = scale.value((k as f64 + 0.5) / N as f64);
-            canvas.rect([x, at[1]], [width / N as f64 + 0.4, 9.0], &scale.css(angle));
-        }
-        for (part, label) in [(0.0, "+½"), (0.5, "twisted"), (1.0, "−½")] {
-            let style = Style::default().middle().size(13.0);
-            canvas.text(at[0] + width * part, at[1] + 24.0, label, style);
-        }
     }
 
     /// Logarithm of the energy against that of time, with a dot for now.

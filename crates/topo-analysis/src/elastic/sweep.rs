@@ -51,7 +51,7 @@ pub fn run_sweep(
     let folder = scene.results(&settings.out);
     writable(&folder)?;
     let Plan { cases, found, todo } = plan(scene, table, settings)?;
-    let estimate = cost(scene, settings, &cases, &found, &todo);
+    let estimate = cost(scene, settings, &found, &todo);
     let n_reused = found.iter().filter(|f| f.is_finished()).count();
     let n_todo = estimate.n_cases;
     progress(Event::Begin {
@@ -147,8 +147,8 @@ pub fn estimate_sweep(
     table: &KnotTable,
     settings: &SweepSettings,
 ) -> Result<Estimate, AnalysisError> {
-    let Plan { cases, found, todo } = plan(scene, table, settings)?;
-    Ok(cost(scene, settings, &cases, &found, &todo))
+    let Plan { found, todo, .. } = plan(scene, table, settings)?;
+    Ok(cost(scene, settings, &found, &todo))
 }
 
 /// The cases of a scene, what is left of them, and which are computed now.
@@ -184,7 +184,6 @@ fn plan(
 fn cost(
     scene: &ElasticScene,
     settings: &SweepSettings,
-    cases: &[ElasticCase],
     found: &[Earlier<SweepRow>],
     todo: &[bool],
 ) -> Estimate {
@@ -199,7 +198,6 @@ fn cost(
         })
         .collect();
     let costs = vec![case_cost(scene, None); todo.iter().filter(|t| **t).count()];
-    debug_assert_eq!(cases.len(), todo.len());
     estimate(&costs, Speed::of(&taken), threads(settings.jobs), true)
 }
 

@@ -9,6 +9,7 @@ use topo_knots::{
     tighten,
 };
 
+use super::rod::trefoil_at;
 use super::{Cell, Effort, Verdict};
 
 type V = Vector3<f64>;
@@ -162,15 +163,7 @@ const DISTURBANCES: [(&str, Disturb); 6] = [
 const N: usize = 120;
 
 fn trefoil() -> [V; N] {
-    std::array::from_fn(|k| {
-        let u = std::f64::consts::TAU * k as f64 / N as f64;
-        let r = 2.0 + (3.0 * u).cos();
-        V::new(
-            r * (2.0 * u).cos(),
-            r * (2.0 * u).sin(),
-            -1.2 * (3.0 * u).sin(),
-        )
-    })
+    std::array::from_fn(|k| trefoil_at(std::f64::consts::TAU * k as f64 / N as f64).into())
 }
 
 fn curve(x: [V; N]) -> Result<Polyline, String> {

@@ -232,14 +232,17 @@ fn closed(point: impl Fn(f64) -> [f64; 3]) -> (Polyline, f64) {
 }
 
 fn trefoil() -> (Polyline, f64) {
-    closed(|u| {
-        let r = 2.0 + (3.0 * u).cos();
-        [
-            r * (2.0 * u).cos(),
-            r * (2.0 * u).sin(),
-            -1.2 * (3.0 * u).sin(),
-        ]
-    })
+    closed(trefoil_at)
+}
+
+/// A right-handed trefoil over one turn of its parameter.
+pub(super) fn trefoil_at(u: f64) -> [f64; 3] {
+    let r = 2.0 + (3.0 * u).cos();
+    [
+        r * (2.0 * u).cos(),
+        r * (2.0 * u).sin(),
+        -1.2 * (3.0 * u).sin(),
+    ]
 }
 
 fn figure_eight() -> (Polyline, f64) {

@@ -217,7 +217,7 @@ impl NoSlip {
         fits
     }
 
-    /// Forgets earlier solutions, as after a jump in time or a checkpoint.
+    /// Forgets earlier solutions, as after a jump in time.
     pub fn forget(&mut self) {
         self.history.clear();
     }

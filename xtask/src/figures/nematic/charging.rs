@@ -1,6 +1,6 @@
 //! Charging the colloid: the ring and its profiles, its buckling, the order parameter and the free energy.
 
-use super::{colloid, face, mark_onset, onset, profile_scale, winding_axis};
+use super::{colloid, face, mark_onset, onset, profile_bar, winding_axis};
 use crate::data::NematicSweep;
 use crate::error::XtaskError;
 use crate::figures::series::{Table, bounds, line, step};
@@ -79,30 +79,14 @@ fn overview(sweep: &NematicSweep, canvas: &mut Canvas) -> Result<(), XtaskError>
         &label,
         Style::default().bold().size(11.0),
     );
-    profile_bar(canvas, [30.0, 292.0]);
-    Ok(())
-}
-
-/// Flat colour bar of the profile angle.
-fn profile_bar(canvas: &mut Canvas, at: [f64; 2]) {
-    const N: usize = 60;
-    let (width, scale) = (150.0, profile_scale());
-    for k in 0..N {
-        let x = at[0] + width * k as f64 / N as f64;
-        let angle = scale.value((k as f64 + 0.5) / N as f64);
-        canvas.rect([x, at[1]], [width / N as f64 + 0.3, 7.0], &scale.css(angle));
-    }
-    let style = Style::default().middle().size(8.5);
-    for (part, label) in [(0.0, "+½"), (0.5, "twisted"), (1.0, "−½")] {
-        canvas.text(at[0] + width * part, at[1] + 16.0, label, style);
-    }
-    let x = at[0] + width + 18.0;
+    profile_bar(canvas, [30.0, 292.0], [150.0, 7.0], 8.5);
     canvas.text(
-        x,
-        at[1] + 7.0,
+        198.0,
+        299.0,
         "Cross-section of the ring",
         Style::default().size(9.0),
     );
+    Ok(())
 }
 
 fn rings(sweep: &NematicSweep, canvas: &mut Canvas) -> Result<(), XtaskError> {
