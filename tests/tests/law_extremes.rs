@@ -267,6 +267,64 @@ fn long_inner_range_discharges_to_the_end() {
     }
 }
 
+/// Charges and discharges an untwisted trefoil of 50 edges with stiff contact: sum of all rises of the energy over what the
+/// discharge starts with, and its end.
+fn bounced(contact: f64, guards: Guards, max_steps: u64) -> (f64, Discharge) {
+    let parameters = RodParameters {
+        n_edges: 50,
+        contact: Some(ContactParameters { stiffness: contact }),
+        ..Default::default()
+    };
+    let accuracy = Accuracy {
+        max_steps,
+        ..Default::default()
+    };
+    let curve = trefoil(400, 2.0, 1.2);
+    let charge = ChargeSettings {
+        duration: 0.2,
+        ..Default::default()
+    };
+    let run = RodBattery::new(&parameters, &accuracy, guards, &curve, 46.0)
+        .and_then(|battery| battery.charge(&charge, &Interrupt::new()))
+        .and_then(|charged| charged.cut(CutSite::MaximumEnergyDensity))
+        .and_then(|cut| cut.discharge(&DischargeSettings::default(), &Interrupt::new()))
+        .unwrap();
+    let curve = &run.record.curve;
+    let energies: Vec<f64> = (0..curve.len()).map(|i| curve.stored_total(i)).collect();
+    let rises = energies.windows(2).map(|e| (e[1] - e[0]).max(0.0));
+    (rises.sum::<f64>() / energies[0], run)
+}
+
+/// Strands far stiffer than the tolerance can tell bounce; what their steps gain stays below its limit all the same.
+#[test]
+fn law_rises_of_the_energy_stay_below_their_sum() {
+    let guards = Guards::default();
+    let (sum, _) = bounced(1e4, guards, 4_000);
+    let single = Guards {
+        energy_rise_in_all: f64::INFINITY,
+        ..guards
+    };
+    let (without, _) = bounced(1e4, single, 4_000);
+    println!("sum of rises {sum:.2e}, with the limit of single steps alone {without:.2e}");
+    assert!(sum <= 1e-3, "{sum:.2e}");
+    assert!(without > 1.5e-3, "nothing to be limited: {without:.2e}");
+}
+
+/// Strands as stiff as the inner range has them touch and stay in touch: the run comes to its end, in few steps.
+#[test]
+fn law_stiff_strands_do_not_bounce() {
+    for contact in [20.0, 100.0, 500.0] {
+        let (sum, run) = bounced(contact, Guards::default(), 20_000);
+        let report = &run.record.report;
+        println!(
+            "k_c = {contact}: {}, {} trials, rises {sum:.1e}",
+            report.stop, report.counters.n_trials
+        );
+        assert!(run.is_finished(), "k_c = {contact}: {}", report.stop);
+        assert!(report.counters.n_trials < 10_000);
+    }
+}
+
 /// Any number at all: ordinary, extreme, zero, negative, infinite or NaN.
 fn any_number() -> impl Strategy<Value = f64> {
     prop_oneof![

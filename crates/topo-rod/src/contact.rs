@@ -1,10 +1,13 @@
 //! Which parts of a rod can touch: broad phase, skin list, window along the rod, and distances of segments.
 
 mod broad_phase;
+mod core;
 mod pairs;
 mod segments;
 mod window;
 
+pub(crate) use self::core::Core;
+pub use self::core::CorePair;
 pub use broad_phase::{BroadPhase, close_pairs};
 pub use pairs::{ActivePair, ContactPairs};
 pub use segments::segment_distance;

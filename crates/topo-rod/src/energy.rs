@@ -65,6 +65,8 @@ pub struct Stiffness {
     pub second: Vec<Matrix3<f64>>,
     /// Block (i, j) of each active pair, in the order of [`ContactPairs::active`].
     pub contact: Vec<Matrix3<f64>>,
+    /// Further pairs with their block (i, j), ascending: neighbours along the rod that are too close, and pairs about to touch.
+    pub further: Vec<(u32, u32, Matrix3<f64>)>,
 }
 
 impl Stiffness {
@@ -79,6 +81,14 @@ impl Stiffness {
             blocks.clear();
             blocks.resize(n, Matrix3::zeros());
         }
+        self.further.clear();
+    }
+
+    /// Adds a spring between vertices i and j whose second derivatives are `block`.
+    pub fn add_further(&mut self, i: u32, j: u32, block: Matrix3<f64>) {
+        self.diagonal[i as usize] += block;
+        self.diagonal[j as usize] += block;
+        self.further.push((i, j, -block));
     }
 }
 

@@ -4,6 +4,9 @@ use nalgebra::Vector3;
 
 use crate::RodState;
 
+/// Edges shorter than this share of their natural length have no direction that rounding would not turn.
+const COLLAPSED: f64 = 1e-3;
+
 /// Geometry of one state: what bend, twist, stretch and twist viscosity share.
 #[derive(Debug, Clone, Default)]
 pub struct Geometry {
@@ -25,7 +28,7 @@ impl Geometry {
         g
     }
 
-    /// Recomputes all; returns false if an edge has no length or a turning angle reached a half turn.
+    /// Recomputes all; returns false if an edge has collapsed or a turning angle reached a half turn.
     pub fn update(&mut self, state: &RodState) -> bool {
         let (x, n, n_edges) = (state.vertices(), state.n_vertices(), state.n_edges());
         self.edge_length.resize(n_edges, 0.0);
@@ -38,7 +41,7 @@ impl Geometry {
         for j in 0..n_edges {
             let e = x[state.edge_end(j)] - x[j];
             let length = e.norm();
-            sound &= length > 1e-12;
+            sound &= length > COLLAPSED * state.rest_length();
             self.edge_length[j] = length;
             self.tangent[j] = e / length;
         }

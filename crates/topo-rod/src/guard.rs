@@ -15,6 +15,8 @@ pub struct Guards {
     pub displacement: f64,
     /// Largest rise of the total energy beyond the work done on the rod, relative.
     pub energy_rise: f64,
+    /// Largest sum of such rises over a run, relative to the energy it starts with.
+    pub energy_rise_in_all: f64,
     /// Largest drift of Tw + Wr of a closed rod before the run fails, in turns.
     pub link_drift: f64,
 }
@@ -24,8 +26,54 @@ impl Default for Guards {
         Self {
             displacement: 0.25,
             energy_rise: 1e-4,
+            energy_rise_in_all: 1e-3,
             link_drift: 0.01,
         }
+    }
+}
+
+/// What a run may still gain in energy by errors of its steps.
+///
+/// A single step may gain little, and never more than a tenth of what the whole run has left: the sum cannot reach the limit,
+/// however many steps there are. A gradient flow descends along any step that is short enough, so a refused one is only
+/// retried shorter.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct RiseBudget {
+    /// Energy that the limits are relative to.
+    scale: f64,
+    risen: f64,
+}
+
+/// Share of what is left that one step may use.
+const SHARE: f64 = 0.1;
+/// Differences of energies below this share of the scale are rounding.
+const ROUNDING: f64 = 1e-14;
+
+impl RiseBudget {
+    /// For a run that starts at `energy`.
+    pub(crate) fn new(energy: f64) -> Self {
+        Self {
+            scale: energy.abs(),
+            risen: 0.0,
+        }
+    }
+
+    /// Widens the scale of a run whose ends are driven: it may start at rest.
+    pub(crate) fn widen(&mut self, energy: f64) {
+        self.scale = self.scale.max(energy.abs());
+    }
+
+    /// Largest rise that a step from `energy` may have.
+    pub(crate) fn allowed(&self, guards: &Guards, energy: f64) -> f64 {
+        let left = (guards.energy_rise_in_all * self.scale - self.risen).max(0.0);
+        (guards.energy_rise * energy.abs().max(1e-12))
+            .min(SHARE * left)
+            .max(ROUNDING * self.scale)
+    }
+
+    /// Books the rise of an accepted step.
+    pub(crate) fn book(&mut self, rise: f64) {
+        self.risen += rise.max(0.0);
     }
 }
 
@@ -134,4 +182,51 @@ fn edges_at(state: &RodState, i: usize) -> impl Iterator<Item = usize> + '_ {
     };
     let after = if i < n_edges { Some(i) } else { None };
     before.into_iter().chain(after)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Steps that each rise by all they may, and fall back: the cycle of a bouncing strand.
+    fn sum_of_rises(guards: &Guards, energy: f64) -> f64 {
+        let mut budget = RiseBudget::new(energy);
+        let mut sum = 0.0;
+        for _ in 0..10_000 {
+            let rise = budget.allowed(guards, energy);
+            budget.book(rise);
+            budget.book(-rise);
+            sum += rise;
+        }
+        sum / energy
+    }
+
+    #[test]
+    fn rises_cannot_add_up_beyond_their_limit() {
+        let guards = Guards::default();
+        let sum = sum_of_rises(&guards, 3.0);
+        assert!(sum > 0.99e-3 && sum < 1.000_001e-3, "{sum:e}");
+        // with the limit of single steps alone, they would
+        let single = Guards {
+            energy_rise_in_all: f64::INFINITY,
+            ..guards
+        };
+        assert!(sum_of_rises(&single, 3.0) > 0.5);
+    }
+
+    #[test]
+    fn a_step_may_rise_by_its_own_limit_while_little_is_spent() {
+        let guards = Guards::default();
+        let mut budget = RiseBudget::new(2.0);
+        assert_eq!(budget.allowed(&guards, 1.0), 1e-4);
+        assert_eq!(budget.allowed(&guards, 0.1), 1e-5);
+        budget.book(1e-3);
+        assert!((budget.allowed(&guards, 2.0) - 1e-4).abs() < 1e-12);
+        // rounding is no rise, even where nothing is left or nothing is stored
+        assert!(budget.allowed(&guards, 0.0) > 0.0);
+        let mut driven = RiseBudget::new(0.0);
+        assert_eq!(driven.allowed(&guards, 0.0), 0.0);
+        driven.widen(5.0);
+        assert_eq!(driven.allowed(&guards, 1.0), 1e-4);
+    }
 }

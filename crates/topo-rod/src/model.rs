@@ -1,6 +1,7 @@
 //! The rod as a system that the integrators of `topo-core` advance: only what the scene names is in it.
 
 mod account;
+mod expected;
 mod implicit;
 
 pub use account::WorkAccount;
@@ -13,11 +14,12 @@ use topo_core::{Ledger, Model, Rejection, SparseError};
 use crate::contact::ContactPairs;
 use crate::energy::{At, Bend, ContactEnergy, EnergyTerm, Force, Stiffness, Stretch, Twist};
 use crate::friction::Friction;
-use crate::guard::{certify, largest_displacement};
+use crate::guard::{RiseBudget, certify, largest_displacement};
 use crate::newton::{NewtonMatrix, NewtonTwist};
 use crate::viscosity::{CentrelineViscosity, TwistViscosity};
 use crate::{Accuracy, Ends, Geometry, Guards, RodError, RodParameters, RodState, Tube};
 use account::Accepted;
+use expected::Expected;
 use implicit::Frozen;
 
 /// Channels of dissipation, in the order of the ledger.
@@ -27,6 +29,8 @@ pub(crate) const CHANNELS: [&str; 3] = ["viscosity", "twist_viscosity", "frictio
 pub struct RodModel {
     terms: Vec<Box<dyn EnergyTerm>>,
     twist: Option<Twist>,
+    contact: Option<ContactEnergy>,
+    expected: Expected,
     friction: Option<Friction>,
     pairs: ContactPairs,
     has_strands: bool,
@@ -41,6 +45,7 @@ pub struct RodModel {
     frozen: Option<Frozen>,
     reuse: usize,
     guards: Guards,
+    rises: RiseBudget,
     ledger: Ledger,
     n_vertices: usize,
     n_edges: usize,
@@ -100,11 +105,12 @@ impl RodModel {
             terms.push(Box::new(twist));
         }
         let mut reach = 0.0;
-        if let Some(contact) = parameters.contact {
-            terms.push(Box::new(ContactEnergy {
-                stiffness: contact.stiffness,
-                diameter: tube.contact_diameter,
-            }));
+        let contact = parameters.contact.map(|contact| ContactEnergy {
+            stiffness: contact.stiffness,
+            diameter: tube.contact_diameter,
+        });
+        if let Some(contact) = contact {
+            terms.push(Box::new(contact));
             reach = tube.contact_diameter;
         }
         let friction = parameters
@@ -118,6 +124,9 @@ impl RodModel {
             reach = reach.max(friction.range);
         }
         let mut pairs = ContactPairs::new(reach, accuracy.skin);
+        if contact.is_some() {
+            pairs = pairs.with_core();
+        }
         pairs.set_cyclic(state.is_closed());
         let (n_vertices, n_edges) = (state.n_vertices(), state.n_edges());
         let held_vertices = ends.held_vertices(state);
@@ -133,6 +142,8 @@ impl RodModel {
         let names: Vec<&'static str> = terms.iter().map(|t| t.name()).collect();
         Ok(Self {
             twist,
+            contact,
+            expected: Expected::new(accuracy.tolerance),
             friction,
             pairs,
             has_strands: reach > 0.0,
@@ -150,6 +161,7 @@ impl RodModel {
             frozen: None,
             reuse: accuracy.reuse,
             guards,
+            rises: RiseBudget::default(),
             ledger: Ledger::new(&names, &CHANNELS),
             n_vertices,
             n_edges,
@@ -218,7 +230,7 @@ impl RodModel {
         }
         if !sound {
             return Err(Rejection::Domain {
-                what: "an edge without length, or a fold of a half turn",
+                what: "a collapsed edge, or a fold of a half turn",
             });
         }
         if self.has_strands && self.pairs.update(state) {
@@ -358,10 +370,9 @@ impl Model for RodModel {
         self.evaluate(to)?;
         let total: f64 = self.at.energies.iter().sum();
         let rise = total - self.accepted.total - self.external_work(from, step, dt).max(0.0);
-        let scale = self.accepted.total.abs().max(1e-12);
-        if rise > self.guards.energy_rise * scale {
+        if rise > self.rises.allowed(&self.guards, self.accepted.total) {
             return Err(Rejection::EnergyRise {
-                relative: rise / scale,
+                relative: rise / self.accepted.total.abs().max(1e-12),
             });
         }
         Ok(())
@@ -369,7 +380,13 @@ impl Model for RodModel {
 
     fn accepted(&mut self, from: &RodState, to: &RodState, step: &[f64], dt: f64) {
         let work = self.external_work(from, step, dt);
+        self.expected.step();
         self.ledger.add_work(work);
+        let total: f64 = self.at.energies.iter().sum();
+        self.rises.book(total - self.accepted.total - work.max(0.0));
+        if self.ends.is_driven() {
+            self.rises.widen(total);
+        }
         self.dissipate(from, to, step, dt);
         self.ledger.set_stored(&self.at.energies);
         self.least_distance = self

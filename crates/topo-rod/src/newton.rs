@@ -56,16 +56,15 @@ impl NewtonMatrix {
     ) -> Result<(), SparseError> {
         let n = state.n_vertices();
         let known = |list: &[(u32, u32)]| {
-            let mut rest = list.iter();
-            pairs
-                .active()
-                .iter()
-                .all(|p| rest.any(|q| *q == (p.i, p.j)))
+            let (mut rest, mut again) = (list.iter(), list.iter());
+            let active = &mut pairs.active().iter();
+            active.all(|p| rest.any(|q| *q == (p.i, p.j)))
+                && (stiffness.further.iter()).all(|p| again.any(|q| *q == (p.0, p.1)))
         };
         // a pattern that has grown much too rich costs more in every factorisation than a new symbolic one
         let lean = self.pairs.len() <= 2 * pairs.active().len() + n;
         if self.solver.is_none() || !lean || !known(&self.pairs) {
-            self.build_pattern(state, pairs)?;
+            self.build_pattern(state, pairs, &stiffness.further)?;
         }
         self.couplings.clear();
         self.couplings.extend_from_slice(couplings);
@@ -122,6 +121,13 @@ impl NewtonMatrix {
             );
         }
         let mut position = 0;
+        for &(i, j, block) in &stiffness.further {
+            while self.pairs[position] != (i, j) {
+                position += 1;
+            }
+            add(3 * n + position, (i as usize, j as usize), block * s, false);
+        }
+        let mut position = 0;
         for &(i, j, c) in couplings {
             while self.pairs[position] != (i, j) {
                 position += 1;
@@ -146,9 +152,19 @@ impl NewtonMatrix {
         solver.factor()
     }
 
-    fn build_pattern(&mut self, state: &RodState, pairs: &ContactPairs) -> Result<(), SparseError> {
+    fn build_pattern(
+        &mut self,
+        state: &RodState,
+        pairs: &ContactPairs,
+        further: &[(u32, u32, Matrix3<f64>)],
+    ) -> Result<(), SparseError> {
         let n = state.n_vertices();
         pairs.near(state, FORESIGHT, &mut self.pairs);
+        if !further.is_empty() {
+            self.pairs.extend(further.iter().map(|p| (p.0, p.1)));
+            self.pairs.sort_unstable();
+            self.pairs.dedup();
+        }
         let mut blocks: Vec<(usize, usize)> = (0..n).map(|i| (i, i)).collect();
         blocks.extend((0..n).map(|j| {
             if j < state.n_edges() {

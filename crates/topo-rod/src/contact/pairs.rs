@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::{BroadPhase, Window, arc_separation};
+use super::{BroadPhase, Core, CorePair, Window, arc_separation};
 use crate::RodState;
 
 /// A pair of vertices in reach of each other.
@@ -40,6 +40,8 @@ pub struct ContactPairs {
     candidates: Vec<Candidate>,
     reference: Vec<Vector3<f64>>,
     active: Vec<ActivePair>,
+    has_core: bool,
+    core: Vec<CorePair>,
     broad_phase: BroadPhase,
     n_rebuilds: u64,
 }
@@ -55,6 +57,8 @@ impl ContactPairs {
             candidates: Vec::new(),
             reference: Vec::new(),
             active: Vec::new(),
+            has_core: false,
+            core: Vec::new(),
             broad_phase: BroadPhase::default(),
             n_rebuilds: 0,
         }
@@ -63,6 +67,17 @@ impl ContactPairs {
     /// Pairs in reach at the state of the last update, in ascending order.
     pub fn active(&self) -> &[ActivePair] {
         &self.active
+    }
+
+    /// Also looks for neighbours along the rod that are closer than a tube can be bent.
+    pub fn with_core(mut self) -> Self {
+        self.has_core = true;
+        self
+    }
+
+    /// Neighbours along the rod too close at the state of the last update, ascending; none unless asked for.
+    pub fn core(&self) -> &[CorePair] {
+        &self.core
     }
 
     /// Pairs (i, j) of the list, ascending.
@@ -76,6 +91,31 @@ impl ContactPairs {
         out.clear();
         let close = |c: &&Candidate| (x[c.i as usize] - x[c.j as usize]).norm_squared() < limit;
         out.extend(self.candidates.iter().filter(close).map(|c| (c.i, c.j)));
+    }
+
+    /// Listed pairs of weight between `least` and `most` apart at positions `x`, ascending.
+    pub(crate) fn between<'a>(
+        &'a self,
+        x: &'a [Vector3<f64>],
+        least: f64,
+        most: f64,
+    ) -> impl Iterator<Item = ActivePair> + 'a {
+        self.candidates.iter().filter_map(move |c| {
+            let d = x[c.i as usize] - x[c.j as usize];
+            let square = d.norm_squared();
+            if square < least * least || square >= most * most {
+                return None;
+            }
+            let distance = square.sqrt();
+            Some(ActivePair {
+                i: c.i,
+                j: c.j,
+                weight: c.weight,
+                distance,
+                normal: d / distance,
+                strands: c.strands,
+            })
+        })
     }
 
     /// Least distance of two vertices of different strands, if any are in reach.
@@ -152,6 +192,9 @@ impl ContactPairs {
     pub fn update(&mut self, state: &RodState) -> bool {
         let x = state.vertices();
         let stale = self.ensure(state);
+        if self.has_core {
+            Core::find(state, &mut self.core);
+        }
         self.active.clear();
         let reach = self.reach * self.reach;
         for c in &self.candidates {

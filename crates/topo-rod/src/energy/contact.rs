@@ -1,8 +1,11 @@
 //! Contact energy: strands repel below the contact diameter.
 
-use super::{At, EnergyTerm, Force, Stiffness};
+use nalgebra::Vector3;
 
-/// Penalty between vertices of different strands, weighted by their share of arclength and by the window W that leaves
+use super::{At, EnergyTerm, Force, Stiffness};
+use crate::contact::ActivePair;
+
+/// Penalty between vertices of different strands (and of a rod that collapses, see `contact::core`), weighted by their share of arclength and by the window W that leaves
 /// neighbours along the rod out.
 ///
 /// ```math
@@ -19,14 +22,14 @@ pub struct ContactEnergy {
 }
 
 impl ContactEnergy {
-    /// V and −dV/dr.
+    /// V and −dV/dr for the diameter `d`.
     #[inline]
-    fn potential(&self, r: f64) -> (f64, f64) {
-        let gap = self.diameter - r;
+    fn potential(&self, r: f64, d: f64) -> (f64, f64) {
+        let gap = d - r;
         if gap <= 0.0 {
             return (0.0, 0.0);
         }
-        let q2 = (self.diameter / r).powi(2);
+        let q2 = (d / r).powi(2);
         let q4 = q2 * q2;
         let v = 0.5 * self.stiffness * gap * gap * q4;
         (v, self.stiffness * gap * q4 + 4.0 * v / r)
@@ -34,14 +37,25 @@ impl ContactEnergy {
 
     /// d²V/dr², positive wherever V is.
     #[inline]
-    fn curvature(&self, r: f64) -> f64 {
-        let gap = self.diameter - r;
+    fn curvature(&self, r: f64, d: f64) -> f64 {
+        let gap = d - r;
         if gap <= 0.0 {
             return 0.0;
         }
-        let q2 = (self.diameter / r).powi(2);
+        let q2 = (d / r).powi(2);
         let k = self.stiffness * q2 * q2;
         k * (1.0 + 8.0 * gap / r + 10.0 * gap * gap / (r * r))
+    }
+}
+
+impl ContactEnergy {
+    /// Adds the stiffness that pairs about to touch will have, as if they touched already.
+    pub(crate) fn add_expected(&self, expected: &[ActivePair], stiffness: &mut Stiffness) {
+        for p in expected {
+            let block = p.normal * p.normal.transpose() * (p.weight * self.stiffness);
+            stiffness.add_further(p.i, p.j, block);
+        }
+        stiffness.further.sort_by_key(|p| (p.0, p.1));
     }
 }
 
@@ -51,31 +65,56 @@ impl EnergyTerm for ContactEnergy {
     }
 
     fn energy(&self, at: At<'_>) -> f64 {
-        at.pairs
-            .active()
-            .iter()
-            .map(|p| p.weight * self.potential(p.distance).0)
+        let strands = at.pairs.active().iter();
+        let core = at.pairs.core().iter();
+        strands
+            .map(|p| p.weight * self.potential(p.distance, self.diameter).0)
+            .chain(core.map(|p| p.weight * self.potential(p.distance, p.limit).0))
             .sum()
     }
 
     fn add_force(&self, at: At<'_>, force: &mut Force) -> f64 {
         let mut sum = 0.0;
+        let mut push =
+            |i: u32, j: u32, weight: f64, normal: Vector3<f64>, (v, push): (f64, f64)| {
+                sum += weight * v;
+                let f = normal * (weight * push);
+                force.vertex[i as usize] += f;
+                force.vertex[j as usize] -= f;
+            };
         for p in at.pairs.active() {
-            let (v, push) = self.potential(p.distance);
-            sum += p.weight * v;
-            let f = p.normal * (p.weight * push);
-            force.vertex[p.i as usize] += f;
-            force.vertex[p.j as usize] -= f;
+            push(
+                p.i,
+                p.j,
+                p.weight,
+                p.normal,
+                self.potential(p.distance, self.diameter),
+            );
+        }
+        for p in at.pairs.core() {
+            push(
+                p.i,
+                p.j,
+                p.weight,
+                p.normal,
+                self.potential(p.distance, p.limit),
+            );
         }
         sum
     }
 
     fn add_stiffness(&self, at: At<'_>, stiffness: &mut Stiffness) {
         for (k, p) in at.pairs.active().iter().enumerate() {
-            let block = p.normal * p.normal.transpose() * (p.weight * self.curvature(p.distance));
+            let curvature = self.curvature(p.distance, self.diameter);
+            let block = p.normal * p.normal.transpose() * (p.weight * curvature);
             stiffness.diagonal[p.i as usize] += block;
             stiffness.diagonal[p.j as usize] += block;
             stiffness.contact[k] -= block;
+        }
+        for p in at.pairs.core() {
+            let curvature = self.curvature(p.distance, p.limit);
+            let block = p.normal * p.normal.transpose() * (p.weight * curvature);
+            stiffness.add_further(p.i, p.j, block);
         }
     }
 }

@@ -111,3 +111,51 @@ fn contact_force_is_the_gradient() {
         2e-5,
     );
 }
+
+/// A rod pressed together along itself until its neighbours repel.
+#[test]
+fn force_of_a_collapsing_rod_is_the_gradient() {
+    let n = 40;
+    let ring: Vec<_> = (0..n)
+        .map(|k| {
+            let u = std::f64::consts::TAU * k as f64 / n as f64;
+            let r = 0.35 * (1.0 + 0.1 * (3.0 * u).cos());
+            Vector3::new(r * u.cos(), r * u.sin(), 0.05 * (2.0 * u).sin())
+        })
+        .collect();
+    let rod = RodState::new(&Polyline::new(ring, true).unwrap(), 6.5, 0.0).unwrap();
+    let term = ContactEnergy {
+        stiffness: 20.0,
+        diameter: 2.0,
+    };
+    let at = |state: &RodState, force: &mut Force| {
+        let mut pairs = ContactPairs::new(2.0, 0.3).with_core();
+        pairs.update(state);
+        let geometry = Geometry::new(state);
+        let at = At {
+            state,
+            geometry: &geometry,
+            pairs: &pairs,
+        };
+        force.reset(state);
+        assert_eq!(term.energy(at), term.add_force(at, force));
+        let core = |p: &crate::contact::CorePair| p.j - p.i < 20;
+        assert!(pairs.core().iter().any(core), "the core is not at work");
+        term.energy(at)
+    };
+    let mut force = Force::default();
+    at(&rod, &mut force);
+    let mut energy = |step: &[f64]| {
+        let mut moved = rod.clone();
+        rod.moved_by(step, false, 2, &mut moved);
+        at(&moved, &mut Force::default())
+    };
+    let gradient = finite_difference_gradient(&mut energy, &vec![0.0; 3 * n], 2e-5);
+    let size = gradient.iter().fold(0.0f64, |a, b| a.max(b.abs()));
+    for i in 0..n {
+        for k in 0..3 {
+            let error = (gradient[k * n + i] + force.vertex[i][k]).abs();
+            assert!(error < 1e-7 * size, "vertex {i}: {error:.2e} of {size:.2e}");
+        }
+    }
+}

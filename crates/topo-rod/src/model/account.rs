@@ -7,6 +7,7 @@ use super::{CHANNELS, RodModel};
 use crate::RodState;
 use crate::energy::Force;
 use crate::friction::friction_form;
+use crate::guard::RiseBudget;
 use crate::newton::NewtonTwist;
 use crate::viscosity::{TwistViscosity, centreline_form, twist_form};
 
@@ -51,6 +52,7 @@ impl RodModel {
     pub fn start(&mut self, state: &RodState) -> Result<(), Rejection> {
         self.evaluate(state)?;
         self.remember(state);
+        self.rises = RiseBudget::new(self.accepted.total);
         self.ledger.set_stored(&self.at.energies);
         Ok(())
     }

@@ -14,10 +14,14 @@ pub(super) struct Frozen {
 
 impl LinearlyImplicit for RodModel {
     fn prepare(&mut self, state: &RodState, g_dt: f64) -> Result<(), Rejection> {
+        self.expected.look_out(state.stamp());
         // order two holds for any matrix, so one may serve several steps of about its length
         if let Some(frozen) = self.frozen.as_mut() {
             let ratio = g_dt / frozen.g_dt;
-            if frozen.n_uses < self.reuse && (0.6..=1.3).contains(&ratio) {
+            if frozen.n_uses < self.reuse
+                && self.expected.pairs().is_empty()
+                && (0.6..=1.3).contains(&ratio)
+            {
                 frozen.n_uses += 1;
                 return Ok(());
             }
@@ -33,6 +37,14 @@ impl LinearlyImplicit for RodModel {
         };
         for term in &self.terms {
             term.add_stiffness(at, &mut self.stiffness);
+        }
+        if let Some(contact) = self.contact {
+            let rate =
+                (self.accepted.rate_stamp == Some(state.stamp())).then_some(&self.accepted.rate);
+            let diameter = contact.diameter;
+            self.expected
+                .update(state, &self.pairs, diameter, rate.map(|v| &v[..]), g_dt);
+            contact.add_expected(self.expected.pairs(), &mut self.stiffness);
         }
         self.newton
             .prepare(

@@ -1,0 +1,116 @@
+//! Pairs within the contact window that are closer than a tube can be bent.
+
+use nalgebra::Vector3;
+
+use crate::RodState;
+
+/// A pair of neighbours along the rod, closer than their limit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CorePair {
+    /// Smaller index.
+    pub i: u32,
+    /// Larger index.
+    pub j: u32,
+    /// Product of the arclengths that the two vertices stand for.
+    pub weight: f64,
+    /// Distance r, in h.
+    pub distance: f64,
+    /// Distance below which they repel, in h.
+    pub limit: f64,
+    /// (x_i − x_j)/r.
+    pub normal: Vector3<f64>,
+}
+
+/// Share of the chord of the tightest bend below which neighbours along the rod repel.
+const SHARE: f64 = 0.5;
+/// Spacing along the rod, in h, at which pairs are looked for on finer rods.
+const SPACING: f64 = 0.25;
+
+/// What keeps a rod from collapsing where the contact window leaves it alone.
+///
+/// A tube of radius h cannot be bent to a radius below h, so that two points an arc s < πh apart are at least 2h sin(s/2h)
+/// apart in space. The stretch energy alone does not know: its price of an edge of no length is finite, and at θ'h = ±4 and
+/// γ = 1 curls shrink through themselves. Neighbours along the rod closer than half that chord therefore repel by the law of
+/// the contact. Rods of γ ≥ 2 stay above 0.7 of the chord, and no pair is ever found on them.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Core;
+
+impl Core {
+    /// Pairs below their limit at `state`, ascending; those across the ends of an open rod are left out.
+    pub(crate) fn find(state: &RodState, out: &mut Vec<CorePair>) {
+        out.clear();
+        let (x, n, l0) = (state.vertices(), state.n_vertices(), state.rest_length());
+        let stride = ((SPACING / l0) as usize).max(1);
+        let share = l0 * stride as f64;
+        let longest = (std::f64::consts::PI / share) as usize;
+        for k in 1..=longest {
+            let apart = k * stride;
+            if 2 * apart >= n {
+                break;
+            }
+            let limit = SHARE * 2.0 * (0.5 * share * k as f64).sin();
+            let square = limit * limit;
+            let last = if state.is_closed() { n } else { n - apart };
+            for i in (0..last).step_by(stride) {
+                let j = if i + apart < n {
+                    i + apart
+                } else {
+                    i + apart - n
+                };
+                let d = x[i] - x[j];
+                let found = d.norm_squared();
+                if found < square {
+                    let distance = found.sqrt().max(1e-9);
+                    let sign = if i < j { 1.0 } else { -1.0 };
+                    out.push(CorePair {
+                        i: i.min(j) as u32,
+                        j: i.max(j) as u32,
+                        weight: share * share,
+                        distance,
+                        limit,
+                        normal: d * (sign / distance),
+                    });
+                }
+            }
+        }
+        out.sort_unstable_by_key(|p| (p.i, p.j));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use topo_core::Polyline;
+
+    fn found(points: impl Iterator<Item = [f64; 3]>, closed: bool, length: f64) -> Vec<CorePair> {
+        let curve = Polyline::new(points.map(Vector3::from).collect(), closed).unwrap();
+        let mut out = Vec::new();
+        Core::find(&RodState::new(&curve, length, 0.0).unwrap(), &mut out);
+        out
+    }
+
+    #[test]
+    fn straight_rods_and_the_tightest_ring_have_none() {
+        let line = (0..=100).map(|k| [0.1 * f64::from(k), 0.0, 0.0]);
+        assert!(found(line, false, 10.0).is_empty());
+        let ring = |radius: f64| {
+            (0..64).map(move |k| {
+                let u = std::f64::consts::TAU * f64::from(k) / 64.0;
+                [radius * u.cos(), radius * u.sin(), 0.0]
+            })
+        };
+        let length = std::f64::consts::TAU;
+        assert!(found(ring(1.0), true, length).is_empty());
+        // a ring shrunk below half of that is everywhere too close, across its seam as well
+        let shrunk = found(ring(0.45), true, length);
+        assert!(shrunk.iter().any(|p| (p.i, p.j) == (0, 60)));
+        assert!(
+            shrunk
+                .windows(2)
+                .all(|p| (p[0].i, p[0].j) < (p[1].i, p[1].j))
+        );
+        let first = shrunk[0];
+        let pulled = first.normal.dot(&Vector3::new(1.0, 0.0, 0.0));
+        assert!(pulled > 0.0 && first.distance < first.limit);
+    }
+}
