@@ -34,6 +34,8 @@ pub enum Command {
     #[command(after_help = "Examples:
   cargo xtask run scenes/trefoil.toml
   cargo xtask run scenes/trefoil.toml --cuts all:8 --out my-results
+  cargo xtask run scenes/elastic-quick.toml --accuracy 0.02    settings for an error of 2 %, and what it came to
+  cargo xtask run scenes/nematic-desk.toml --budget \"10 min\"
   cargo xtask run scenes/nematic-quick.toml --fields --out fields    with files for `cargo xtask export`")]
     Run(RunArgs),
     /// Measure the error of discharge times: 34 fixed cases against finer runs of the same cuts.
@@ -46,7 +48,14 @@ pub enum Command {
   cargo xtask stability                       all maps, draft: minutes
   cargo xtask stability --only nematic        those of one system
   cargo xtask stability --quality standard    every run to its very end")]
-    Stability(StabilityArgs),
+    Stability(SystemsArgs),
+    /// Measure what accuracy costs: the same cases under many settings, against converged references.
+    #[command(after_help = "Examples:
+  cargo xtask tradeoff                        draft: minutes
+  cargo xtask tradeoff --only rod             one system
+  cargo xtask tradeoff --quality standard     more cases, finer settings
+  cargo xtask tradeoff --held-back            do the error estimates of `run --accuracy` hold?")]
+    Tradeoff(TradeoffArgs),
     /// Compare the numbers of two results folders to the byte, but for what tells how long they took.
     #[command(after_help = "Example:
   cargo xtask compare results results-again")]
@@ -115,6 +124,18 @@ pub struct RunArgs {
     /// Where to cut: `argmax`, `near-ties` or `all:K`; instead of the scene's own.
     #[arg(long, value_name = "CUTS")]
     pub cuts: Option<String>,
+    /// Largest relative error of the discharge times (t99 of a rod, t99.9 of a colloid): picks the settings, and estimates the
+    /// error of each result.
+    #[arg(
+        long,
+        value_name = "ERROR",
+        conflicts_with = "budget",
+        allow_negative_numbers = true
+    )]
+    pub accuracy: Option<f64>,
+    /// Time that the scene may take, such as "10 min": picks the most accurate settings for it.
+    #[arg(long, value_name = "TIME")]
+    pub budget: Option<String>,
     /// Keep the whole nematic field at each time looked at, for `export` (13 files a case; 3 MB each at R = 15).
     #[arg(long)]
     pub fields: bool,
@@ -171,17 +192,30 @@ pub enum ExportFormat {
     All,
 }
 
-/// Options of `stability`.
+/// Options of `stability` and `tradeoff`.
 #[derive(Debug, Args)]
-pub struct StabilityArgs {
+pub struct SystemsArgs {
     /// Only this system (rod, nematic, knots); may be given several times.
     #[arg(long, value_name = "SYSTEM", value_parser = ["rod", "nematic", "knots"])]
     pub only: Vec<String>,
-    /// How long each run is followed: draft or standard.
+    /// How much is run: draft or standard.
     #[arg(long, value_enum, default_value_t = Quality::Draft)]
     pub quality: Quality,
     #[command(flatten)]
     pub work: WorkArgs,
+}
+
+/// Options of `tradeoff`.
+#[derive(Debug, Args)]
+pub struct TradeoffArgs {
+    #[command(flatten)]
+    pub systems: SystemsArgs,
+    /// Check the error estimates of runs by wish on cases that the table was not measured on, instead of measuring it.
+    #[arg(long)]
+    pub held_back: bool,
+    /// Write what was measured into the table from which scenes with `accuracy` or `budget` take their settings.
+    #[arg(long, conflicts_with = "held_back")]
+    pub record: bool,
 }
 
 /// Options of `compare`.

@@ -12,11 +12,13 @@ mod packages;
 mod run;
 mod stability;
 mod test;
+mod tradeoff;
 
 use crate::cli::{Cli, Command, WorkArgs};
 use crate::error::XtaskError;
+use crate::figures::Quality;
 use crate::interrupt;
-use topo_analysis::SweepSettings;
+use topo_analysis::{Effort, SweepSettings};
 
 /// Runs the command.
 pub fn dispatch(cli: Cli) -> Result<(), XtaskError> {
@@ -25,6 +27,7 @@ pub fn dispatch(cli: Cli) -> Result<(), XtaskError> {
         Command::Run(args) => run::run(&args),
         Command::Accuracy(args) => accuracy::run(&args),
         Command::Stability(args) => stability::run(&args),
+        Command::Tradeoff(args) => tradeoff::run(&args),
         Command::Compare(args) => compare::run(&args),
         Command::Export(args) => export::run(&args),
         Command::Knot(args) => knot::run(&args),
@@ -42,6 +45,19 @@ fn settings(work: &WorkArgs) -> Result<SweepSettings, XtaskError> {
         interrupt: interrupt::install(),
         ..SweepSettings::new(&work.out)
     })
+}
+
+/// How much a command runs that knows no paper quality.
+fn effort(quality: Quality) -> Result<Effort, XtaskError> {
+    match quality {
+        Quality::Draft => Ok(Effort::Draft),
+        Quality::Standard => Ok(Effort::Standard),
+        Quality::Paper => Err(XtaskError::Argument {
+            key: "--quality",
+            value: "paper".to_owned(),
+            remedy: "this is made at draft or standard".to_owned(),
+        }),
+    }
 }
 
 /// Gives rayon `jobs` threads, or all processors, and returns the number (0 for all).

@@ -1,5 +1,6 @@
 //! Where commands meet the physics: the tables behind figures, and a user's own scene.
 
+mod by_wish;
 mod estimate;
 mod nematic;
 
@@ -13,8 +14,8 @@ use std::sync::OnceLock;
 use std::time::Instant;
 use topo_analysis::{
     ACCURACY_CASES, AnalysisError, Cuts, ElasticScene, Estimate, Event, NematicScene, Preset,
-    Scene, Shard, SweepReport, SweepSettings, measure_accuracy, quantile, run_sweep, tight_shapes,
-    with_jobs, write_knots, write_table,
+    Scene, Shard, SweepReport, SweepSettings, Wish, errors_of_rods, measure_accuracy, quantile,
+    run_sweep, tight_shapes, with_jobs, write_knots, write_table,
 };
 use topo_core::Interrupt;
 use topo_knots::{KnotTable, TightenSettings};
@@ -211,11 +212,24 @@ pub fn accuracy(preset: Preset, settings: &SweepSettings) -> Result<(), XtaskErr
 }
 
 /// Runs a user's scene and prints its table.
-pub fn scene(file: &Path, cuts: Option<&str>, settings: &SweepSettings) -> Result<(), XtaskError> {
+///
+/// A `wish` stands above what the file says of accuracy.
+pub fn scene(
+    file: &Path,
+    cuts: Option<&str>,
+    wish: Option<Wish>,
+    settings: &SweepSettings,
+) -> Result<(), XtaskError> {
     match Scene::read(file)? {
-        Scene::Elastic(scene) => elastic_scene(*scene, cuts, settings),
-        Scene::Nematic(scene) => match cuts {
-            None => nematic::scene(&scene, settings),
+        Scene::Elastic(mut scene) => {
+            scene.wish = wish.or(scene.wish);
+            elastic_scene(*scene, cuts, settings)
+        }
+        Scene::Nematic(mut scene) => match cuts {
+            None => {
+                scene.wish = wish.or(scene.wish);
+                nematic::scene(&scene, settings)
+            }
             Some(text) => Err(XtaskError::Argument {
                 key: "--cuts",
                 value: text.to_owned(),
@@ -238,6 +252,10 @@ fn elastic_scene(
         })?;
     }
     let table = KnotTable::builtin();
+    let (scene, grant) = scene.granted(&table, settings.jobs)?;
+    if let Some(grant) = &grant {
+        by_wish::tell_grant(grant, "edges");
+    }
     tell_estimate(&topo_analysis::estimate_sweep(&scene, &table, settings)?);
     let report = sweep(&scene, &table, settings)?;
     println!("knot    theta'h     cut    E/E0      Wr     t50     t90     t95     t99  untied");
@@ -261,6 +279,12 @@ fn elastic_scene(
         }
     }
     tell_taken(&report.estimate, report.wall_seconds);
+    if let Some(grant) = &grant {
+        let check = scene.check_of(grant, &report.rows);
+        let coarser = sweep(&check, &table, settings)?;
+        let rows = errors_of_rods(grant, &report.rows, &coarser.rows);
+        by_wish::tell_errors(grant, &rows, &scene.results(&settings.out))?;
+    }
     println!("written to {}", scene.results(&settings.out).display());
     Ok(())
 }

@@ -18,6 +18,7 @@ mod scenes;
 mod stability;
 #[cfg(test)]
 mod synthetic;
+mod tradeoff;
 mod viewer;
 
 use clap::Parser;

@@ -38,7 +38,7 @@ impl Estimate {
 }
 
 /// Share of the threads' time that cases side by side use.
-const EFFICIENCY: f64 = 0.93;
+pub(crate) const EFFICIENCY: f64 = 0.93;
 
 /// The expected cost of one case.
 #[derive(Debug, Clone, Copy, PartialEq)]

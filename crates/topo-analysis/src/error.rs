@@ -36,6 +36,14 @@ pub enum AnalysisError {
         /// What would be right.
         remedy: String,
     },
+    /// No measured setting grants what a scene asks for.
+    #[error("{wish} cannot be had: {reason}")]
+    Wish {
+        /// What was asked for.
+        wish: String,
+        /// What can be had.
+        reason: String,
+    },
     /// The rod refuses its parameters.
     #[error("{case}: {source}")]
     Rod {

@@ -20,6 +20,8 @@ mod statistics;
 mod table;
 mod timeline;
 mod times;
+mod tradeoff;
+mod wish;
 
 pub use cost::Estimate;
 pub use elastic::{
@@ -43,3 +45,8 @@ pub use statistics::{Spread, median, quantile};
 pub use table::{KnotRow, SweepRow, read_table, write_table};
 pub use timeline::{Timeline, TimelineSettings, TypedSample, UNKNOT};
 pub use times::{DischargeTimes, ELASTIC_SHARES, Interpolated};
+pub use tradeoff::{
+    HeldBackRow, PeakBytes, REFERENCE, Setting, TradeoffEvent, TradeoffRow, TradeoffRun,
+    TradeoffSystem, TradeoffWork, compared, held_back, settings_of, tradeoff,
+};
+pub use wish::{ErrorRow, Grant, Point, Wish, errors_of_colloids, errors_of_rods, points};

@@ -3,7 +3,7 @@
 use crate::cli::RunArgs;
 use crate::compute;
 use crate::error::XtaskError;
-use topo_analysis::SweepSettings;
+use topo_analysis::{SweepSettings, Wish};
 
 pub fn run(args: &RunArgs) -> Result<(), XtaskError> {
     if !(args.checkpoint.is_finite() && args.checkpoint >= 0.0) {
@@ -19,5 +19,19 @@ pub fn run(args: &RunArgs) -> Result<(), XtaskError> {
         keep_fields: args.fields,
         ..super::settings(&args.work)?
     };
-    compute::scene(&args.scene, args.cuts.as_deref(), &settings)
+    compute::scene(&args.scene, args.cuts.as_deref(), wish(args)?, &settings)
+}
+
+/// What the options ask for instead of settings.
+fn wish(args: &RunArgs) -> Result<Option<Wish>, XtaskError> {
+    let refused = |key, value: String| move |remedy| XtaskError::Argument { key, value, remedy };
+    match (args.accuracy, &args.budget) {
+        (Some(error), _) => Wish::accuracy(error)
+            .map(Some)
+            .map_err(refused("--accuracy", error.to_string())),
+        (None, Some(text)) => Wish::budget(text)
+            .map(Some)
+            .map_err(refused("--budget", text.clone())),
+        (None, None) => Ok(None),
+    }
 }

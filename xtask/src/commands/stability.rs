@@ -3,30 +3,17 @@
 use std::time::Instant;
 
 use super::threads;
-use crate::cli::StabilityArgs;
+use crate::cli::SystemsArgs;
 use crate::error::XtaskError;
-use crate::figures::Quality;
 use crate::progress::Progress;
 use crate::{data, interrupt, stability};
-use topo_analysis::{
-    Effort, ExtremeSystem, StabilityRow, n_extremes, read_table, with_jobs, write_table,
-};
+use topo_analysis::{ExtremeSystem, StabilityRow, n_extremes, read_table, with_jobs, write_table};
 
 /// Changes with whatever changes the outcome of a run.
 const VERSION: u32 = 1;
 
-pub fn run(args: &StabilityArgs) -> Result<(), XtaskError> {
-    let effort = match args.quality {
-        Quality::Draft => Effort::Draft,
-        Quality::Standard => Effort::Standard,
-        Quality::Paper => {
-            return Err(XtaskError::Argument {
-                key: "--quality",
-                value: "paper".to_owned(),
-                remedy: "maps are made at draft or standard".to_owned(),
-            });
-        }
-    };
+pub fn run(args: &SystemsArgs) -> Result<(), XtaskError> {
+    let effort = super::effort(args.quality)?;
     let jobs = threads(args.work.jobs)?;
     let stop = interrupt::install();
     let folder = args.work.out.join("stability");

@@ -1,14 +1,19 @@
 //! Nematic sweeps: run with progress, told as a table.
 
-use super::Teller;
+use super::{Teller, by_wish};
 use crate::error::XtaskError;
 use topo_analysis::{
-    NematicReport, NematicScene, SweepSettings, estimate_nematic_sweep, nematic_resonance,
-    run_nematic_sweep,
+    NematicReport, NematicScene, SweepSettings, errors_of_colloids, estimate_nematic_sweep,
+    nematic_resonance, run_nematic_sweep,
 };
 
 /// Runs a user's scene and prints its table.
 pub fn scene(scene: &NematicScene, settings: &SweepSettings) -> Result<(), XtaskError> {
+    let (scene, grant) = scene.granted(settings.jobs)?;
+    let scene = &scene;
+    if let Some(grant) = &grant {
+        by_wish::tell_grant(grant, "ξ_N a cell");
+    }
     super::tell_estimate(&estimate_nematic_sweep(scene, settings)?);
     let report = sweep(scene, settings)?;
     println!(
@@ -62,6 +67,11 @@ pub fn scene(scene: &NematicScene, settings: &SweepSettings) -> Result<(), Xtask
         }
     }
     super::tell_taken(&report.estimate, report.wall_seconds);
+    if let Some(grant) = &grant {
+        let coarser = sweep(&scene.check_of(grant), settings)?;
+        let rows = errors_of_colloids(grant, &report.rows, &coarser.rows);
+        by_wish::tell_errors(grant, &rows, &scene.results(&settings.out))?;
+    }
     println!("written to {}", scene.results(&settings.out).display());
     Ok(())
 }

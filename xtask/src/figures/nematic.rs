@@ -141,6 +141,9 @@ pub fn face(sweep: &NematicSweep, quality: Quality) -> Vec<String> {
     let flow = match (first.flow.as_str(), sweep.flowing.is_empty()) {
         ("on", _) => "with flow".to_owned(),
         (_, true) => "without flow".to_owned(),
+        _ if sweep.flowing.len() == sweep.rows.len() => {
+            "curves and rates without flow, each *q* run with it as well".to_owned()
+        }
         _ => format!(
             "without flow but where *q* = {} is shown with it",
             sweep

@@ -114,7 +114,13 @@ fn power_of_ten(exponent: i32) -> String {
 
 /// Number with a fixed count of decimals and a true minus sign.
 pub fn fixed(value: f64, places: usize) -> String {
-    format!("{value:.places$}").replace('-', "−")
+    let text = format!("{value:.places$}");
+    // a zero has no sign
+    match text.strip_prefix('-') {
+        Some(zero) if !zero.contains(|c: char| ('1'..='9').contains(&c)) => zero.to_owned(),
+        Some(size) => format!("−{size}"),
+        None => text,
+    }
 }
 
 /// How often something happens.
@@ -185,6 +191,7 @@ mod tests {
         assert_eq!(number(-2.0, 2), "−2");
         assert_eq!(number(-0.001, 2), "0");
         assert_eq!(signed(1.75), "+1.75");
+        assert_eq!([fixed(-0.0004, 3), fixed(-1.5, 2)], ["0.000", "−1.50"]);
         assert_eq!(
             (log_tick(0.1), log_tick(1e-5)),
             ("0.1".to_owned(), "10⁻⁵".to_owned())

@@ -289,13 +289,14 @@ fn vanishing(t: &Tables) -> Said {
 fn reversal(t: &Tables) -> Said {
     let s = of(t)?;
     let mut told = Vec::new();
-    let mut all = true;
+    let (mut some, mut all) = (false, true);
     for row in &s.flowing {
         let slices = s.slices(row).ok()?;
         let after: Vec<_> = slices.iter().filter(|s| s.time.is_some()).collect();
         let (swaps, n) = sign_changes(row, &after);
         if n > 1 {
             told.push(format!("{swaps} (q = {})", row.q));
+            some |= swaps > 0;
             all &= swaps > 0;
         }
     }
@@ -307,7 +308,7 @@ fn reversal(t: &Tables) -> Said {
             "changes of sign of the vertical velocity above the particle: {}",
             told.join(", ")
         ),
-        Verdict::when(all),
+        Verdict::both(some, all),
     ))
 }
 

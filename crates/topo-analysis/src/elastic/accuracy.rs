@@ -2,11 +2,12 @@
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use topo_core::{CpuClock, GAMMA_L_STABLE_SMALL, Interrupt};
+use topo_core::{CpuClock, Interrupt};
 use topo_knots::KnotTable;
 use topo_rod::{Accuracy, CutSite};
 
 use super::case::{CaseJob, ELASTIC, charge};
+use super::choices::Preset;
 use super::scene::ElasticScene;
 use crate::AnalysisError;
 use crate::knots::Shapes;
@@ -86,12 +87,47 @@ pub fn reference_scene(scene: &ElasticScene) -> ElasticScene {
     let mut fine = scene.clone();
     fine.rod.n_edges = 2 * scene.rod.n_edges;
     fine.accuracy = Accuracy {
-        tolerance: 1e-4,
-        gamma: GAMMA_L_STABLE_SMALL,
-        reuse: 1,
-        ..scene.accuracy
+        max_steps: scene.accuracy.max_steps,
+        ..Preset::Reference.accuracy()
     };
     fine
+}
+
+/// What one charge and one discharge say; times in T_0, the energy in E_0.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct MeasuredDischarge {
+    /// Place of the cut, s/L.
+    pub cut: f64,
+    /// Elastic energy after charging.
+    pub energy: f64,
+    pub t50: Option<f64>,
+    pub t99: Option<f64>,
+}
+
+/// Charges a case, cuts it and follows the discharge, writing nothing.
+pub(crate) fn measured_discharge(
+    job: &CaseJob<'_>,
+    site: CutSite,
+    interrupt: &Interrupt,
+) -> Result<MeasuredDischarge, AnalysisError> {
+    let charged = charge(job, interrupt)?;
+    let last = charged.record().samples.last();
+    let energy = last.map_or(f64::NAN, |s| s.elastic());
+    let run = charged
+        .cut(site)
+        .and_then(|c| c.discharge(&job.scene.discharge, interrupt))
+        .map_err(|source| AnalysisError::Rod {
+            case: job.case.name(),
+            source,
+        })?;
+    let times = DischargeTimes::of(&run.record.curve, &ELASTIC, run.start, &ELASTIC_SHARES);
+    let at = |share| times.at(share).map(|t| t.value);
+    Ok(MeasuredDischarge {
+        cut: run.at,
+        energy,
+        t50: at(0.5),
+        t99: at(0.99),
+    })
 }
 
 /// Compares the discharges of `scene` with those of [`reference_scene`] on the given knots and twists, cut at the same place.
@@ -116,37 +152,19 @@ pub fn measure_accuracy(
             let Some(tight) = shapes.get(&name) else {
                 return Ok(None);
             };
-            let run = |scene: &ElasticScene, site: CutSite| -> Result<_, AnalysisError> {
+            let run = |scene: &ElasticScene, site: CutSite| {
                 let clock = CpuClock::start();
                 let case = scene.case(&name, Some(twist));
-                let refuse = |source| AnalysisError::Rod {
-                    case: case.name(),
-                    source,
-                };
                 let job = CaseJob {
                     scene,
                     case: &case,
                     tight,
                     table,
                 };
-                let charged = charge(&job, interrupt)?;
-                let energy = charged
-                    .record()
-                    .samples
-                    .last()
-                    .map_or(f64::NAN, |s| s.elastic());
-                let run = charged
-                    .cut(site)
-                    .and_then(|c| c.discharge(&scene.discharge, interrupt))
-                    .map_err(refuse)?;
-                let times =
-                    DischargeTimes::of(&run.record.curve, &ELASTIC, run.start, &ELASTIC_SHARES);
-                let at = |share| times.at(share).map(|t| t.value);
-                Ok((run.at, energy, at(0.5), at(0.99), clock.seconds()))
+                measured_discharge(&job, site, interrupt).map(|found| (found, clock.seconds()))
             };
-            let (cut, energy, t50, t99, cpu_seconds) = run(scene, CutSite::MaximumEnergyDensity)?;
-            let (_, fine_energy, t50_reference, t99_reference, cpu_seconds_reference) =
-                run(&fine, CutSite::At(cut))?;
+            let (coarse, cpu_seconds) = run(scene, CutSite::MaximumEnergyDensity)?;
+            let (reference, cpu_seconds_reference) = run(&fine, CutSite::At(coarse.cut))?;
             if interrupt.is_requested() {
                 return Ok(None);
             }
@@ -161,14 +179,14 @@ pub fn measure_accuracy(
             Ok(Some(AccuracyRow {
                 knot: name,
                 twist,
-                cut,
-                t50,
-                t99,
-                t50_reference,
-                t99_reference,
-                t50_error_percent: error(t50, t50_reference),
-                t99_error_percent: error(t99, t99_reference),
-                energy_ratio: energy / fine_energy,
+                cut: coarse.cut,
+                t50: coarse.t50,
+                t99: coarse.t99,
+                t50_reference: reference.t50,
+                t99_reference: reference.t99,
+                t50_error_percent: error(coarse.t50, reference.t50),
+                t99_error_percent: error(coarse.t99, reference.t99),
+                energy_ratio: coarse.energy / reference.energy,
                 cpu_seconds,
                 cpu_seconds_reference,
             }))

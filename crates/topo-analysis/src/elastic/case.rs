@@ -33,6 +33,9 @@ pub(crate) fn fingerprint(scene: &ElasticScene, case: &ElasticCase, entry: &Knot
     if starts_from_two_images(case, entry) {
         all["images"] = 2.into();
     }
+    if let Some(cuts) = &scene.fixed_cuts {
+        all["fixed_cuts"] = json!(cuts.get(&case.state()));
+    }
     identity(&all)
 }
 
@@ -133,6 +136,13 @@ pub(crate) fn run(
         return Ok(None);
     }
     let sites: Vec<f64> = match scene.cuts {
+        _ if scene.fixed_cuts.is_some() => {
+            let fixed = scene.fixed_cuts.as_ref();
+            fixed
+                .and_then(|cuts| cuts.get(&case.state()))
+                .cloned()
+                .unwrap_or_default()
+        }
         Cuts::Argmax => vec![charged.cut_candidates(0.0)[0].at],
         Cuts::NearTies => charged
             .cut_candidates(NEAR_TIE)

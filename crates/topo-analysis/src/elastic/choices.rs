@@ -1,7 +1,9 @@
 //! Choices that a scene makes: numbers, names, cuts, presets.
 
 use serde::{Deserialize, Serialize};
+use topo_core::GAMMA_L_STABLE_SMALL;
 use topo_knots::TightenSettings;
+use topo_rod::Accuracy;
 
 /// One value, a list of them, or evenly spaced numbers.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -105,6 +107,8 @@ pub enum Preset {
     Standard,
     /// N = 400, tolerance 2e-4 h, near-tied cuts.
     Paper,
+    /// What others are measured against: N = 400, tolerance 1e-4 h, g = 1 − 1/√2, a new Newton matrix every step.
+    Reference,
 }
 
 impl Preset {
@@ -114,12 +118,16 @@ impl Preset {
             Self::Draft => "draft",
             Self::Standard => "standard",
             Self::Paper => "paper",
+            Self::Reference => "reference",
         }
     }
 
     /// Edges N of a rod.
     pub fn edges(self) -> usize {
-        if self == Self::Paper { 400 } else { 200 }
+        match self {
+            Self::Draft | Self::Standard => 200,
+            Self::Paper | Self::Reference => 400,
+        }
     }
 
     /// Local error aimed at, in h.
@@ -128,6 +136,24 @@ impl Preset {
             Self::Draft => 1e-3,
             Self::Standard => 5e-4,
             Self::Paper => 2e-4,
+            Self::Reference => 1e-4,
+        }
+    }
+
+    /// Integrator and tolerance.
+    pub fn accuracy(self) -> Accuracy {
+        let usual = Accuracy {
+            tolerance: self.tolerance(),
+            ..Accuracy::default()
+        };
+        if self == Self::Reference {
+            Accuracy {
+                gamma: GAMMA_L_STABLE_SMALL,
+                reuse: 1,
+                ..usual
+            }
+        } else {
+            usual
         }
     }
 
@@ -145,7 +171,7 @@ impl Preset {
         match self {
             Self::Draft => TightenSettings::draft(),
             Self::Standard => TightenSettings::standard(),
-            Self::Paper => TightenSettings::fine(),
+            Self::Paper | Self::Reference => TightenSettings::fine(),
         }
     }
 }

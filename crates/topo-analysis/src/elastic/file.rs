@@ -14,6 +14,8 @@
 //! [accuracy]
 //! preset = "standard"
 //! ```
+//!
+//! Instead of the table `[accuracy]`, the first line may say `accuracy = 0.02` (relative error of t99) or `budget = "10 min"`.
 
 use std::path::Path;
 
@@ -28,6 +30,7 @@ use super::scene::ElasticScene;
 use crate::AnalysisError;
 use crate::scene::read_text;
 use crate::timeline::TimelineSettings;
+use crate::wish::WishOr;
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -105,7 +108,8 @@ struct File {
     #[serde(default)]
     discharge: DischargeTable,
     #[serde(default)]
-    accuracy: AccuracyTable,
+    accuracy: WishOr<AccuracyTable>,
+    budget: Option<String>,
 }
 
 impl ElasticScene {
@@ -126,13 +130,18 @@ impl ElasticScene {
             path: path.to_owned(),
             message: e.to_string(),
         })?;
-        let (rod, preset) = (file.rod, file.accuracy.preset);
+        let rod = file.rod;
         let value = |key: &str, value: String, remedy: &str| AnalysisError::SceneValue {
             path: path.to_owned(),
             key: key.to_owned(),
             value,
             remedy: remedy.to_owned(),
         };
+        let (asked, wish) = file
+            .accuracy
+            .with_budget(file.budget.as_deref())
+            .map_err(|(key, text, remedy)| value(key, text, &remedy))?;
+        let preset = asked.preset;
         let knots = match rod.knot {
             Names::One(name) => vec![name],
             Names::List(names) => names,
@@ -184,17 +193,11 @@ impl ElasticScene {
         }
         let standard = Self::published(preset);
         let accuracy = Accuracy {
-            tolerance: file
-                .accuracy
-                .tolerance
-                .unwrap_or(standard.accuracy.tolerance),
-            gamma: file.accuracy.gamma.unwrap_or(standard.accuracy.gamma),
-            integrator: file.accuracy.integrator.unwrap_or_default(),
-            reuse: file.accuracy.reuse.unwrap_or(standard.accuracy.reuse),
-            max_steps: file
-                .accuracy
-                .max_steps
-                .unwrap_or(standard.accuracy.max_steps),
+            tolerance: asked.tolerance.unwrap_or(standard.accuracy.tolerance),
+            gamma: asked.gamma.unwrap_or(standard.accuracy.gamma),
+            integrator: asked.integrator.unwrap_or_default(),
+            reuse: asked.reuse.unwrap_or(standard.accuracy.reuse),
+            max_steps: asked.max_steps.unwrap_or(standard.accuracy.max_steps),
             ..standard.accuracy
         };
         let discharge = DischargeSettings {
@@ -212,7 +215,7 @@ impl ElasticScene {
             rod: RodParameters {
                 slenderness: rod.slenderness,
                 reading: rod.reading,
-                n_edges: file.accuracy.edges.unwrap_or(preset.edges()),
+                n_edges: asked.edges.unwrap_or(preset.edges()),
                 twist_ratio: 1.0 / (1.0 + rod.poisson_ratio),
                 stretch_ratio: rod.stretch_ratio,
                 twist: None,
@@ -235,6 +238,7 @@ impl ElasticScene {
                 ..standard.timeline
             },
             accuracy,
+            wish,
             ..standard
         };
         let refuse = |source| AnalysisError::Rod {

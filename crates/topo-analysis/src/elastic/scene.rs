@@ -1,5 +1,6 @@
 //! An elastic experiment and the cases it stands for.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
@@ -10,8 +11,11 @@ use topo_rod::{
 
 use super::choices::{Cuts, Numbers, Preset};
 use super::file::defaults;
+use super::sweep::weight;
 use crate::AnalysisError;
+use crate::table::SweepRow;
 use crate::timeline::TimelineSettings;
+use crate::wish::{Grant, Load, Measured, Wish, grant};
 
 /// An elastic experiment: which knots, how twisted, how cut, how accurately.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -42,6 +46,12 @@ pub struct ElasticScene {
     pub preset: Preset,
     /// How the start shapes are tightened.
     pub tighten: TightenSettings,
+    /// What was asked for instead of settings.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub wish: Option<Wish>,
+    /// Places of the cuts by [`ElasticCase::state`], instead of `cuts`: those of another run.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fixed_cuts: Option<BTreeMap<String, Vec<f64>>>,
 }
 
 /// One charge with its cuts.
@@ -67,6 +77,15 @@ impl ElasticCase {
             self.rod.n_edges
         )
     }
+
+    /// The charged state, whatever the resolution.
+    pub fn state(&self) -> String {
+        state(&self.knot, self.rod.twist.unwrap_or(0.0))
+    }
+}
+
+fn state(knot: &str, twist: f64) -> String {
+    format!("{knot} {twist}")
 }
 
 impl ElasticScene {
@@ -91,12 +110,11 @@ impl ElasticScene {
             cuts: preset.cuts(),
             discharge: DischargeSettings::default(),
             timeline: TimelineSettings::default(),
-            accuracy: Accuracy {
-                tolerance: preset.tolerance(),
-                ..Accuracy::default()
-            },
+            accuracy: preset.accuracy(),
             preset,
             tighten: preset.tighten(),
+            wish: None,
+            fixed_cuts: None,
         }
     }
 
@@ -122,7 +140,7 @@ impl ElasticScene {
     }
 
     /// The case of one knot at one twist; without a twist, none is modelled.
-    pub(super) fn case(&self, knot: &str, twist: Option<f64>) -> ElasticCase {
+    pub(crate) fn case(&self, knot: &str, twist: Option<f64>) -> ElasticCase {
         ElasticCase {
             knot: knot.to_owned(),
             rod: RodParameters {
@@ -130,6 +148,52 @@ impl ElasticScene {
                 ..self.rod.clone()
             },
         }
+    }
+
+    /// The scene with the settings that grant its wish, and which these are; as it is without a wish.
+    ///
+    /// # Errors
+    /// A wish that no measured setting grants, with what can be had, or an unknown knot.
+    pub fn granted(
+        &self,
+        table: &topo_knots::KnotTable,
+        jobs: usize,
+    ) -> Result<(Self, Option<Grant>), AnalysisError> {
+        let Some(wish) = self.wish else {
+            return Ok((self.clone(), None));
+        };
+        let load = Load {
+            cases: self.cases(table)?.len() as f64 * weight(self),
+            threads: crate::cost::threads(jobs),
+        };
+        let grant = grant(Measured::Rod, wish, load).map_err(|reason| AnalysisError::Wish {
+            wish: wish.to_string(),
+            reason,
+        })?;
+        let point = &grant.point;
+        Ok((self.at(point.resolution, point.tolerance), Some(grant)))
+    }
+
+    /// The coarser scene whose difference to the runs `rows` tells their error: the same states and cuts.
+    pub fn check_of(&self, grant: &Grant, rows: &[SweepRow]) -> Self {
+        let mut cuts: BTreeMap<String, Vec<f64>> = BTreeMap::new();
+        for row in rows {
+            let at = cuts.entry(state(&row.knot, row.twist)).or_default();
+            at.push(row.cut);
+        }
+        let point = &grant.point;
+        Self {
+            folder: format!("{}-check", self.folder),
+            fixed_cuts: Some(cuts),
+            ..self.at(point.check_resolution, point.check_tolerance)
+        }
+    }
+
+    fn at(&self, edges: f64, tolerance: f64) -> Self {
+        let mut scene = self.clone();
+        scene.rod.n_edges = edges as usize;
+        scene.accuracy.tolerance = tolerance;
+        scene
     }
 
     /// Where files with the scene's tables lie below an output folder.
@@ -161,7 +225,7 @@ impl ElasticScene {
             scene
         };
         let mut variants = vec![contact, read_as(Reading::Tight)];
-        if self.preset == Preset::Paper {
+        if matches!(self.preset, Preset::Paper | Preset::Reference) {
             variants.extend([Reading::Hard, Reading::OwnLength].map(read_as));
         }
         variants

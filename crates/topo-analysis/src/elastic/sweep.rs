@@ -218,6 +218,15 @@ fn case_cost(scene: &ElasticScene, n_cuts: Option<usize>) -> Cost {
     }
 }
 
+/// Cost of a case of a scene, over that of a charge with one discharge.
+pub(super) fn weight(scene: &ElasticScene) -> f64 {
+    let once = ElasticScene {
+        cuts: Cuts::Argmax,
+        ..scene.clone()
+    };
+    case_cost(scene, None).seconds / case_cost(&once, None).seconds
+}
+
 /// Processor seconds of a charge at N = 200 and tolerance 1e-3 h.
 const CHARGE_SECONDS: f64 = 0.2;
 /// The same of a discharge.

@@ -14,6 +14,9 @@
 //! [accuracy]
 //! tolerance = 3e-5
 //! ```
+//!
+//! Instead of the spacing and the table `[accuracy]`, the first line may say `accuracy = 0.02` (relative error of t99.9) or
+//! `budget = "10 min"`.
 
 use std::path::Path;
 
@@ -28,6 +31,7 @@ use super::scene::NematicScene;
 use crate::AnalysisError;
 use crate::elastic::Numbers;
 use crate::scene::read_text;
+use crate::wish::WishOr;
 
 /// The colloid and its windings.
 #[derive(Debug, Deserialize)]
@@ -51,7 +55,8 @@ struct File {
     discharge: DischargeSettings,
     flow: Option<FlowTable>,
     #[serde(default)]
-    accuracy: NematicAccuracy,
+    accuracy: WishOr<NematicAccuracy>,
+    budget: Option<String>,
 }
 
 /// Flow and the windings that have it.
@@ -105,6 +110,10 @@ impl NematicScene {
                 })
                 .collect::<Result<Vec<u32>, _>>()
         };
+        let (accuracy, wish) = file
+            .accuracy
+            .with_budget(file.budget.as_deref())
+            .map_err(|(key, text, remedy)| value(key, text, &remedy))?;
         let n = file.nematic;
         let charges = match &n.q {
             Some(q) => windings("nematic.q", q)?,
@@ -144,7 +153,8 @@ impl NematicScene {
             switch: file.switch,
             discharge: file.discharge,
             flow,
-            accuracy: file.accuracy,
+            accuracy,
+            wish,
         };
         scene
             .accuracy

@@ -8,8 +8,11 @@ use topo_nematic::{
     SurfacePattern, SwitchSettings,
 };
 
+use super::sweep::weight;
 use super::table::NematicRow;
+use crate::AnalysisError;
 use crate::elastic::Preset;
+use crate::wish::{Grant, Load, Measured, Wish, grant};
 
 /// The q that the draft preset shows with flow.
 const DRAFT_FLOW: u32 = 4;
@@ -35,6 +38,9 @@ pub struct NematicScene {
     pub flow: Option<FlowParameters>,
     /// Tolerance, storage and limits.
     pub accuracy: NematicAccuracy,
+    /// What was asked for instead of settings.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub wish: Option<Wish>,
 }
 
 /// One charge and its discharge.
@@ -55,7 +61,7 @@ impl NematicScene {
         let (radius, flowing) = match preset {
             Preset::Draft => (15.0, Some(vec![DRAFT_FLOW])),
             Preset::Standard => (25.0, Some((1..=12).collect())),
-            Preset::Paper => (52.5, None),
+            Preset::Paper | Preset::Reference => (52.5, None),
         };
         Self {
             folder: "nematic".to_owned(),
@@ -71,7 +77,44 @@ impl NematicScene {
             discharge: DischargeSettings::default(),
             flow: Some(FlowParameters::default()),
             accuracy: NematicAccuracy::default(),
+            wish: None,
         }
+    }
+
+    /// The scene with the settings that grant its wish, and which these are; as it is without a wish.
+    ///
+    /// # Errors
+    /// A wish that no measured setting grants, with what can be had, or parameters that make no sense.
+    pub fn granted(&self, jobs: usize) -> Result<(Self, Option<Grant>), AnalysisError> {
+        let Some(wish) = self.wish else {
+            return Ok((self.clone(), None));
+        };
+        let load = Load {
+            cases: weight(self)?,
+            threads: crate::cost::threads(jobs),
+        };
+        let grant = grant(Measured::Nematic, wish, load).map_err(|reason| AnalysisError::Wish {
+            wish: wish.to_string(),
+            reason,
+        })?;
+        let point = &grant.point;
+        Ok((self.at(point.resolution, point.tolerance), Some(grant)))
+    }
+
+    /// The coarser scene whose difference to a granted one tells its error.
+    pub fn check_of(&self, grant: &Grant) -> Self {
+        let point = &grant.point;
+        Self {
+            folder: format!("{}-check", self.folder),
+            ..self.at(point.check_resolution, point.check_tolerance)
+        }
+    }
+
+    fn at(&self, spacing: f64, tolerance: f64) -> Self {
+        let mut scene = self.clone();
+        scene.nematic.spacing = spacing;
+        scene.accuracy.tolerance = tolerance;
+        scene
     }
 
     /// The cases of the scene, by q; with flow after without.

@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
-use topo_nematic::{FlowCoupling, NematicBattery, Progress, Threads};
+use topo_nematic::{FlowCoupling, NematicBattery, NematicParameters, Progress, Threads};
 
 use super::case::{self, CaseRun, RESULTS_VERSION, fingerprint, forget_others};
 use super::field;
@@ -14,6 +14,7 @@ use crate::cost::{Cost, Estimate, Speed, Stopwatch, estimate, threads};
 use crate::folder::{Earlier, finished, tell_replaced, writable};
 use crate::progress::{Event, SweepSettings, with_jobs};
 use crate::table::write_table;
+use crate::tradeoff::{MEASURED_CELL, MEASURED_RADIUS};
 
 /// Cases that hold more than this each run one after another, all threads in each.
 const BIG_CASE: u64 = 1 << 30;
@@ -240,6 +241,30 @@ fn case_cost(case: &NematicCase, battery: &NematicBattery) -> Cost {
         seconds: seconds * winding * cells.powf(CELLS_POWER),
         bytes: battery.memory().total() + flow_bytes,
     }
+}
+
+/// Cost of all cases of a scene, in units of the middle one that accuracy was measured on, whatever the spacing.
+pub(super) fn weight(scene: &NematicScene) -> Result<f64, AnalysisError> {
+    let measured = NematicCase {
+        q: 5,
+        nematic: NematicParameters {
+            radius: MEASURED_RADIUS,
+            spacing: scene.nematic.spacing,
+            cell: MEASURED_CELL,
+            ..NematicParameters::default()
+        },
+        flow: None,
+    };
+    let cost = |case: &NematicCase| -> Result<f64, AnalysisError> {
+        let battery = NematicBattery::new(&case.nematic, &scene.accuracy);
+        let battery = battery.map_err(|source| AnalysisError::Nematic {
+            case: scene.blank_row(case).case_name(),
+            source,
+        })?;
+        Ok(case_cost(case, &battery).seconds)
+    };
+    let all = scene.cases().iter().map(cost).sum::<Result<f64, _>>()?;
+    Ok(all / cost(&measured)?)
 }
 
 /// Processor seconds of a case of a million cells without flow.

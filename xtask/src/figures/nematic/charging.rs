@@ -120,6 +120,9 @@ fn rings(sweep: &NematicSweep, canvas: &mut Canvas) -> Result<(), XtaskError> {
     Ok(())
 }
 
+/// Distance that the numbers at the vectors keep.
+const ROOM: f64 = 12.0;
+
 fn vectors(sweep: &NematicSweep, canvas: &mut Canvas, table: &mut Table) {
     let ends: Vec<(u32, f64, f64)> = sweep
         .rows
@@ -156,8 +159,19 @@ fn vectors(sweep: &NematicSweep, canvas: &mut Canvas, table: &mut Table) {
         plots.push(Plot::Scatter(dot));
     }
     panel.draw(canvas, plots, &[]);
-    for (q, x, y) in ends.iter().filter(|(_, x, y)| x.hypot(*y) > 0.25 * most) {
+    // from the outside in; a number that another one leaves no room for is left out
+    let mut far: Vec<&(u32, f64, f64)> = ends
+        .iter()
+        .filter(|(_, x, y)| x.hypot(*y) > 0.25 * most)
+        .collect();
+    far.sort_by(|a, b| b.1.hypot(b.2).total_cmp(&a.1.hypot(a.2)));
+    let mut taken: Vec<[f64; 2]> = Vec::new();
+    for (q, x, y) in far {
         let [px, py] = panel.place(x * 1.13, y * 1.13);
+        if taken.iter().any(|t| (t[0] - px).hypot(t[1] - py) < ROOM) {
+            continue;
+        }
+        taken.push([px, py]);
         let style = Style::default().middle().halo().size(8.0);
         canvas.text(px, py + 3.0, &q.to_string(), style);
     }

@@ -1,0 +1,353 @@
+//! Speed against accuracy: the same cases under many settings, compared with converged references.
+
+mod front;
+mod held_back;
+mod knots;
+mod nematic;
+mod rod;
+
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use topo_core::{CpuClock, Interrupt};
+
+use crate::AnalysisError;
+use crate::stability::Effort;
+pub use front::{Setting, settings_of};
+pub use held_back::{HeldBackRow, held_back};
+pub(crate) use nematic::{MEASURED_CELL, MEASURED_RADIUS};
+
+/// Which part of the product is measured.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum TradeoffSystem {
+    /// Charge, cut and discharge of knotted rods.
+    Rod,
+    /// Charge, switch and discharge of colloids.
+    Nematic,
+    /// Tight shapes of knots.
+    Knots,
+}
+
+impl TradeoffSystem {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Rod, Self::Nematic, Self::Knots];
+
+    /// Stem of its table.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Rod => "rod",
+            Self::Nematic => "nematic",
+            Self::Knots => "knots",
+        }
+    }
+}
+
+/// Name of the setting that the others are compared with.
+pub const REFERENCE: &str = "reference";
+
+/// One quantity of one run, as measured.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct TradeoffRun {
+    /// What was run.
+    pub case: String,
+    /// Which setting was chosen.
+    pub setting: String,
+    /// Its value.
+    pub value: String,
+    /// What was found.
+    pub quantity: String,
+    /// Its number; empty when the run did not come so far.
+    pub result: Option<f64>,
+    /// Processor seconds of the run.
+    pub cpu_seconds: f64,
+    /// Most bytes held during the run.
+    pub peak_bytes: u64,
+}
+
+/// One quantity of one run beside its reference.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct TradeoffRow {
+    /// `rod`, `nematic` or `knots`.
+    pub system: String,
+    /// What was run.
+    pub case: String,
+    /// Which setting was chosen.
+    pub setting: String,
+    /// Its value.
+    pub value: String,
+    /// What was found.
+    pub quantity: String,
+    /// Its number; empty when the run did not come so far.
+    pub result: Option<f64>,
+    /// The number of the reference.
+    pub reference: Option<f64>,
+    /// |result/reference − 1|; empty without one of them, or where the reference is zero.
+    pub relative_error: Option<f64>,
+    /// Processor seconds of the run.
+    pub cpu_seconds: f64,
+    /// Most bytes held during the run.
+    pub peak_bytes: u64,
+    /// Whether no other numerical setting is both cheaper and more accurate in this quantity over all cases.
+    pub pareto: bool,
+}
+
+/// Measures the most bytes that a computation holds beyond those held before it.
+pub type PeakBytes<'a> = &'a (dyn Fn(&mut dyn FnMut()) -> u64 + Sync);
+
+/// Times a run and counts its bytes.
+pub(crate) struct Meter<'a> {
+    peak: PeakBytes<'a>,
+}
+
+impl Meter<'_> {
+    fn measure<T>(&self, run: impl FnOnce() -> T) -> (Option<T>, f64, u64) {
+        let (mut run, mut found) = (Some(run), None);
+        let clock = CpuClock::start();
+        let bytes = (self.peak)(&mut || found = run.take().map(|run| run()));
+        (found, clock.seconds(), bytes)
+    }
+}
+
+/// What a run found: numbers by quantity, processor seconds, most bytes held.
+pub(crate) struct Outcome {
+    quantities: Vec<(&'static str, Option<f64>)>,
+    cpu_seconds: f64,
+    peak_bytes: u64,
+}
+
+/// A run to come.
+pub(crate) struct Trial {
+    case: String,
+    setting: &'static str,
+    value: String,
+    run: Box<TrialFn>,
+}
+
+type TrialFn =
+    dyn Fn(&Meter<'_>, &Interrupt) -> Result<Option<Outcome>, AnalysisError> + Send + Sync;
+
+impl Trial {
+    fn is_of(&self, run: &TradeoffRun) -> bool {
+        self.case == run.case && self.setting == run.setting && self.value == run.value
+    }
+
+    fn name(&self) -> String {
+        format!("{} {} {}", self.case, self.setting, self.value)
+    }
+}
+
+/// What surrounds the runs of a trade-off.
+pub struct TradeoffWork<'a> {
+    /// Folder in which tight shapes are kept.
+    pub out: &'a std::path::Path,
+    /// Runs that were finished before.
+    pub known: &'a [TradeoffRun],
+    /// Asks to stop.
+    pub interrupt: &'a Interrupt,
+    /// How bytes are measured.
+    pub peak_bytes: PeakBytes<'a>,
+    /// Told the number of runs to come, then the name of each that is finished with its rows.
+    pub told: &'a (dyn Fn(TradeoffEvent<'_>) + Sync),
+}
+
+/// What a trade-off tells.
+#[derive(Debug)]
+pub enum TradeoffEvent<'a> {
+    /// So many runs begin.
+    Begin(usize),
+    /// A run is finished.
+    Done {
+        /// Its name.
+        name: &'a str,
+        /// Its rows.
+        runs: &'a [TradeoffRun],
+    },
+}
+
+/// Runs every setting of a system on the present pool of threads; what is `known` is not run again.
+///
+/// When interrupted, what is finished is returned.
+///
+/// # Errors
+/// A case that cannot be set up; a run that stops early is no error, its numbers are missing.
+pub fn tradeoff(
+    system: TradeoffSystem,
+    effort: Effort,
+    work: &TradeoffWork<'_>,
+) -> Result<Vec<TradeoffRun>, AnalysisError> {
+    let trials = match system {
+        TradeoffSystem::Rod => rod::trials(effort, work)?,
+        TradeoffSystem::Nematic => nematic::trials(effort),
+        TradeoffSystem::Knots => knots::trials(effort)?,
+    };
+    (work.told)(TradeoffEvent::Begin(trials.len()));
+    run_all(&trials, work)
+}
+
+fn run_all(trials: &[Trial], work: &TradeoffWork<'_>) -> Result<Vec<TradeoffRun>, AnalysisError> {
+    let meter = Meter {
+        peak: work.peak_bytes,
+    };
+    let done: Vec<Vec<TradeoffRun>> = trials
+        .par_iter()
+        .with_max_len(1)
+        .map(|trial| {
+            let known = work.known.iter().filter(|run| trial.is_of(run));
+            let mut runs: Vec<TradeoffRun> = known.cloned().collect();
+            if runs.is_empty() {
+                if work.interrupt.is_requested() {
+                    return Ok(runs);
+                }
+                let Some(outcome) = (trial.run)(&meter, work.interrupt)? else {
+                    return Ok(runs);
+                };
+                runs.extend(
+                    outcome
+                        .quantities
+                        .iter()
+                        .map(|(quantity, result)| TradeoffRun {
+                            case: trial.case.clone(),
+                            setting: trial.setting.to_owned(),
+                            value: trial.value.clone(),
+                            quantity: (*quantity).to_owned(),
+                            result: *result,
+                            cpu_seconds: outcome.cpu_seconds,
+                            peak_bytes: outcome.peak_bytes,
+                        }),
+                );
+            }
+            (work.told)(TradeoffEvent::Done {
+                name: &trial.name(),
+                runs: &runs,
+            });
+            Ok(runs)
+        })
+        .collect::<Result<_, AnalysisError>>()?;
+    Ok(done.concat())
+}
+
+/// Runs beside their references, with the front marked.
+///
+/// # Validation
+/// `errors_are_against_the_reference_of_the_case`, `the_front_has_no_dominated_setting`
+pub fn compared(system: TradeoffSystem, runs: &[TradeoffRun]) -> Vec<TradeoffRow> {
+    let mut rows: Vec<TradeoffRow> = runs
+        .iter()
+        .map(|run| {
+            let reference = runs
+                .iter()
+                .find(|r| {
+                    r.setting == REFERENCE && r.case == run.case && r.quantity == run.quantity
+                })
+                .and_then(|r| r.result);
+            let error = |(a, b): (f64, f64)| {
+                let error = (a / b - 1.0).abs();
+                (b.abs() > ZERO && error.is_finite()).then_some(error)
+            };
+            TradeoffRow {
+                system: system.name().to_owned(),
+                case: run.case.clone(),
+                setting: run.setting.clone(),
+                value: run.value.clone(),
+                quantity: run.quantity.clone(),
+                result: run.result,
+                reference,
+                relative_error: run.result.zip(reference).and_then(error),
+                cpu_seconds: run.cpu_seconds,
+                peak_bytes: run.peak_bytes,
+                pareto: false,
+            }
+        })
+        .collect();
+    front::mark(&mut rows);
+    rows
+}
+
+/// Edges (or spacing) and tolerance of a value of the setting `resolution`.
+pub(crate) fn resolution_of(system: TradeoffSystem, value: &str) -> Option<(f64, f64)> {
+    match system {
+        TradeoffSystem::Rod => rod::resolution_of(value),
+        TradeoffSystem::Nematic => nematic::resolution_of(value),
+        TradeoffSystem::Knots => None,
+    }
+}
+
+/// A reference below this is zero: an order parameter without tilt.
+const ZERO: f64 = 1e-3;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    pub(super) fn run(case: &str, value: &str, result: f64, cpu_seconds: f64) -> TradeoffRun {
+        TradeoffRun {
+            case: case.to_owned(),
+            setting: if value == REFERENCE {
+                REFERENCE
+            } else {
+                "resolution"
+            }
+            .to_owned(),
+            value: value.to_owned(),
+            quantity: "t99".to_owned(),
+            result: Some(result),
+            cpu_seconds,
+            peak_bytes: 1,
+        }
+    }
+
+    #[test]
+    fn errors_are_against_the_reference_of_the_case() {
+        let runs = [
+            run("a", REFERENCE, 10.0, 9.0),
+            run("b", REFERENCE, 20.0, 9.0),
+            run("a", "coarse", 11.0, 1.0),
+            run("b", "coarse", 19.0, 1.0),
+            run("c", "coarse", 19.0, 1.0),
+        ];
+        let rows = compared(TradeoffSystem::Rod, &runs);
+        let errors: Vec<_> = rows.iter().map(|r| r.relative_error).collect();
+        assert_eq!(errors[..2], [Some(0.0); 2]);
+        assert!((errors[2].unwrap() - 0.1).abs() < 1e-12);
+        assert!((errors[3].unwrap() - 0.05).abs() < 1e-12);
+        assert_eq!((errors[4], rows[4].reference), (None, None));
+    }
+
+    #[test]
+    fn finished_runs_are_kept_and_others_told() {
+        let trial = |value: &str| Trial {
+            case: "a".to_owned(),
+            setting: "resolution",
+            value: value.to_owned(),
+            run: Box::new(|meter, _| {
+                let (found, cpu_seconds, peak_bytes) = meter.measure(|| 2.0);
+                Ok(Some(Outcome {
+                    quantities: vec![("t99", found)],
+                    cpu_seconds,
+                    peak_bytes,
+                }))
+            }),
+        };
+        let known = [run("a", "coarse", 7.0, 1.0)];
+        let n_told = std::sync::atomic::AtomicUsize::new(0);
+        let interrupt = Interrupt::new();
+        let work = TradeoffWork {
+            out: std::path::Path::new("."),
+            known: &known,
+            interrupt: &interrupt,
+            peak_bytes: &|run| {
+                run();
+                5
+            },
+            told: &|_| {
+                n_told.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+            },
+        };
+        let trials = [trial("coarse"), trial("fine")];
+        let runs = run_all(&trials, &work).unwrap();
+        assert_eq!((runs[0].result, runs[1].result), (Some(7.0), Some(2.0)));
+        assert_eq!(runs[1].peak_bytes, 5);
+        interrupt.request();
+        assert_eq!(run_all(&trials, &work).unwrap().len(), 1);
+        assert_eq!(n_told.into_inner(), 3);
+    }
+}
