@@ -17,6 +17,8 @@ pub(crate) struct NewtonMatrix {
     couplings: Vec<(u32, u32, f64)>,
     /// Blocks (free, held) that carry a prescribed motion over to the free vertices.
     driven: Vec<(usize, usize, Matrix3<f64>)>,
+    /// Pairs in reach when the pattern was made.
+    n_active_then: usize,
     fixed: Vec<bool>,
     floating: bool,
     chain: Chain,
@@ -61,10 +63,13 @@ impl NewtonMatrix {
             active.all(|p| rest.any(|q| *q == (p.i, p.j)))
                 && (stiffness.further.iter()).all(|p| again.any(|q| *q == (p.0, p.1)))
         };
-        // a pattern that has grown much too rich costs more in every factorisation than a new symbolic one
-        let lean = self.pairs.len() <= 2 * pairs.active().len() + n;
+        // a pattern that has grown much too rich costs more in every factorisation than a new symbolic one; one that was as
+        // rich when it was made would be made as rich again
+        let n_active = pairs.active().len();
+        let lean = self.pairs.len() <= 2 * n_active + n || 2 * n_active >= self.n_active_then;
         if self.solver.is_none() || !lean || !known(&self.pairs) {
             self.build_pattern(state, pairs, &stiffness.further)?;
+            self.n_active_then = n_active;
         }
         self.couplings.clear();
         self.couplings.extend_from_slice(couplings);
