@@ -31,13 +31,21 @@ fn quantities(settings: &[Setting]) -> Vec<&str> {
 }
 
 const PANEL: [f64; 2] = [210.0, 170.0];
-const STEP: f64 = 276.0;
+/// From one panel to the next, across and down.
+const STEP: [f64; 2] = [276.0, 226.0];
 
 /// Error against cost, one panel a quantity; the front is joined by a line.
 pub fn draw(system: TradeoffSystem, rows: &[TradeoffRow]) -> Result<Picture, XtaskError> {
     let settings = settings_of(rows);
     let names = quantities(&settings);
-    let mut canvas = Canvas::new(STEP * names.len().max(2) as f64, 268.0, 4.0);
+    // four panels make a square
+    let columns = if names.len() == 4 {
+        2
+    } else {
+        names.len().max(2)
+    };
+    let foot = STEP[1] * names.len().div_ceil(columns) as f64;
+    let mut canvas = Canvas::new(STEP[0] * columns as f64, foot + 42.0, 4.0);
     let drawn = |s: &&Setting| s.setting != REFERENCE && s.cpu_seconds > 0.0;
     let mut families: Vec<&str> = Vec::new();
     for s in settings.iter().filter(drawn) {
@@ -68,7 +76,10 @@ pub fn draw(system: TradeoffSystem, rows: &[TradeoffRow]) -> Result<Picture, Xta
         let error = |s: &Setting| 100.0 * s.high_error.max(LEAST_ERROR);
         let errors: Vec<f64> = of.iter().map(|s| error(s)).collect();
         let panel = Panel {
-            at: [54.0 + STEP * k as f64, 22.0],
+            at: [
+                54.0 + STEP[0] * (k % columns) as f64,
+                22.0 + STEP[1] * (k / columns) as f64,
+            ],
             size: PANEL,
             x: Axis::log("CPU seconds a case", range(&costs)),
             y: Axis::log(
@@ -93,19 +104,24 @@ pub fn draw(system: TradeoffSystem, rows: &[TradeoffRow]) -> Result<Picture, Xta
         }
         panel.draw(&mut canvas, plots, &[]);
         let letter = char::from(b'a' + k as u8).to_string();
-        canvas.letter(panel.at[0] - 44.0, 14.0, &letter);
+        canvas.letter(panel.at[0] - 44.0, panel.at[1] - 8.0, &letter);
     }
     let mut x = 24.0;
     for family in &families {
-        canvas.rect([x, 244.0], [8.0, 8.0], ink(family));
-        canvas.text(x + 12.0, 251.5, family, Style::default().size(9.0));
+        canvas.rect([x, foot + 14.0], [8.0, 8.0], ink(family));
+        canvas.text(x + 12.0, foot + 21.5, family, Style::default().size(9.0));
         x += 30.0 + 5.2 * family.len() as f64;
     }
     let note = format!(
         "{}: 90th percentile over cases; large dots and the line: nothing is cheaper and better",
         system.name()
     );
-    canvas.text(24.0, 264.0, &note, Style::default().size(8.5).color(QUIET));
+    canvas.text(
+        24.0,
+        foot + 36.0,
+        &note,
+        Style::default().size(8.5).color(QUIET),
+    );
     canvas.finish()
 }
 

@@ -101,25 +101,31 @@ impl<T: Real> Kernel<T> {
                 .beyond([j, k])
                 .map(|wall| share(wall.map(|w| w.conductance)));
             let [left, right] = self.end_walls(start, length).map(share);
-            let [xx, xy, xz, yy, yz] = centre;
-            const WIDTH: usize = 8;
             let mut bulk = [0.0_f64; WIDTH];
-            let density = |i: usize| {
-                let (xx, xy, xz): (f64, f64, f64) = (xx[i].into(), xy[i].into(), xz[i].into());
-                let (yy, yz): (f64, f64) = (yy[i].into(), yz[i].into());
+            let density = |xx: T, xy: T, xz: T, yy: T, yz: T| {
+                let (xx, xy, xz): (f64, f64, f64) = (xx.into(), xy.into(), xz.into());
+                let (yy, yz): (f64, f64) = (yy.into(), yz.into());
                 let zz = -xx - yy;
                 let t = xx * xx + yy * yy + zz * zz + 2.0 * (xy * xy + xz * xz + yz * yz);
                 let determinant =
                     xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
                 t * (half_a + quarter_c * t) + b * determinant - reference
             };
-            let whole = length - length % WIDTH;
-            for i in (0..whole).step_by(WIDTH) {
+            let [
+                (xx, xx_end),
+                (xy, xy_end),
+                (xz, xz_end),
+                (yy, yy_end),
+                (yz, yz_end),
+            ] = centre.map(<[T]>::as_chunks::<WIDTH>);
+            for ((((xx, xy), xz), yy), yz) in xx.iter().zip(xy).zip(xz).zip(yy).zip(yz) {
                 for lane in 0..WIDTH {
-                    bulk[lane] += density(i + lane);
+                    bulk[lane] += density(xx[lane], xy[lane], xz[lane], yy[lane], yz[lane]);
                 }
             }
-            let rest: f64 = (whole..length).map(density).sum();
+            let rest: f64 = (0..xx_end.len())
+                .map(|i| density(xx_end[i], xy_end[i], xz_end[i], yy_end[i], yz_end[i]))
+                .sum();
             let bulk: f64 = bulk.iter().sum::<f64>() + rest;
             sums[1] += bulk;
             if has_field {
@@ -170,38 +176,50 @@ fn square_of_difference(a: &Tensor5, b: &Tensor5) -> f64 {
     contract(&d, &d)
 }
 
+/// Sums side by side, so that additions need not wait for each other.
+const WIDTH: usize = 8;
+
 /// Sum of squares of differences, in the metric of the tensors.
 #[inline(always)]
 fn squares<T: Real>(a: &[&[T]; 5], b: &[&[T]; 5]) -> f64 {
     let n = a[0].len();
-    let (a, b) = (a.map(|s| &s[..n]), b.map(|s| &s[..n]));
-    let [xx, xy, xz, yy, yz] = a;
-    let [xx2, xy2, xz2, yy2, yz2] = b;
-    // Several sums side by side, so that additions need not wait for each other.
-    const WIDTH: usize = 8;
+    // fixed lengths let the compiler use wide vectors
+    let [
+        (xx, xx_end),
+        (xy, xy_end),
+        (xz, xz_end),
+        (yy, yy_end),
+        (yz, yz_end),
+    ] = a.map(|s| s[..n].as_chunks::<WIDTH>());
+    let [
+        (xx2, xx2_end),
+        (xy2, xy2_end),
+        (xz2, xz2_end),
+        (yy2, yy2_end),
+        (yz2, yz2_end),
+    ] = b.map(|s| s[..n].as_chunks::<WIDTH>());
     let mut sums = [0.0_f64; WIDTH];
-    let mut i = 0;
-    while i + WIDTH <= n {
+    let first = xx.iter().zip(xy).zip(xz).zip(yy).zip(yz);
+    let second = xx2.iter().zip(xy2).zip(xz2).zip(yy2).zip(yz2);
+    for (((((xx, xy), xz), yy), yz), ((((xx2, xy2), xz2), yy2), yz2)) in first.zip(second) {
         for lane in 0..WIDTH {
-            let at = i + lane;
-            let dxx: f64 = (xx[at] - xx2[at]).into();
-            let dyy: f64 = (yy[at] - yy2[at]).into();
-            let dxy: f64 = (xy[at] - xy2[at]).into();
-            let dxz: f64 = (xz[at] - xz2[at]).into();
-            let dyz: f64 = (yz[at] - yz2[at]).into();
+            let dxx: f64 = (xx[lane] - xx2[lane]).into();
+            let dyy: f64 = (yy[lane] - yy2[lane]).into();
+            let dxy: f64 = (xy[lane] - xy2[lane]).into();
+            let dxz: f64 = (xz[lane] - xz2[lane]).into();
+            let dyz: f64 = (yz[lane] - yz2[lane]).into();
             let dzz = dxx + dyy;
             sums[lane] +=
                 dxx * dxx + dyy * dyy + dzz * dzz + 2.0 * (dxy * dxy + dxz * dxz + dyz * dyz);
         }
-        i += WIDTH;
     }
-    for at in i..n {
+    for at in 0..xx_end.len() {
         let d: Tensor5 = [
-            (xx[at] - xx2[at]).into(),
-            (xy[at] - xy2[at]).into(),
-            (xz[at] - xz2[at]).into(),
-            (yy[at] - yy2[at]).into(),
-            (yz[at] - yz2[at]).into(),
+            (xx_end[at] - xx2_end[at]).into(),
+            (xy_end[at] - xy2_end[at]).into(),
+            (xz_end[at] - xz2_end[at]).into(),
+            (yy_end[at] - yy2_end[at]).into(),
+            (yz_end[at] - yz2_end[at]).into(),
         ];
         sums[0] += contract(&d, &d);
     }

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::NematicState;
-use crate::tensor::largest_eigenvalue;
+use crate::tensor::{is_ordered_above, largest_eigenvalue};
 
 /// Number of azimuthal sectors in which the ring is looked for.
 const N_SECTORS: usize = 128;
@@ -83,7 +83,11 @@ fn sectors(state: &NematicState, threshold: f64) -> Option<Vec<[f64; 2]>> {
                 if !state.is_fluid([i, j, k]) {
                     continue;
                 }
-                let order = largest_eigenvalue(&state.tensor(grid.index([i, j, k])));
+                let tensor = state.tensor(grid.index([i, j, k]));
+                if is_ordered_above(&tensor, threshold) {
+                    continue;
+                }
+                let order = largest_eigenvalue(&tensor);
                 if order >= threshold {
                     continue;
                 }

@@ -102,16 +102,56 @@ pub fn order_and_director(q: &Tensor5) -> (f64, [f64; 3]) {
     (order, [n.x, n.y, n.z])
 }
 
-/// The largest eigenvalue of Q, by the trigonometric formula.
+/// The largest eigenvalue of Q: the largest root of
+///
+/// ```math
+/// \lambda^3 - 3 p^2 \lambda - \det Q = 0, \quad p^2 = Q{:}Q/6, \quad p \le \lambda \le 2 p
+/// ```
+///
+/// Newton's method comes down to it from 2p, which it is when Q is uniaxial, and so needs a few steps nearly everywhere; where the
+/// two largest eigenvalues nearly coincide it is slow, and the trigonometric formula takes over.
+///
+/// # Validation
+/// `eigenvalues_are_those_of_the_matrix`
 pub fn largest_eigenvalue(q: &Tensor5) -> f64 {
-    let half_square = contract(q, q) / 2.0;
-    if half_square <= 0.0 {
+    let square = contract(q, q) / 6.0;
+    if square <= 0.0 {
         return 0.0;
     }
-    let p = (half_square / 3.0).sqrt();
-    let determinant = matrix(q).determinant();
-    let cosine = (determinant / (2.0 * p * p * p)).clamp(-1.0, 1.0);
+    let p = square.sqrt();
+    let determinant = determinant(q);
+    let mut root = 2.0 * p;
+    for _ in 0..NEWTON_STEPS {
+        let slope = 3.0 * (root * root - square);
+        if slope < square {
+            break;
+        }
+        let step = (root * (root * root - 3.0 * square) - determinant) / slope;
+        root -= step;
+        // the next step would be below rounding
+        if step.abs() < 1e-9 * root {
+            return root;
+        }
+    }
+    let cosine = (determinant / (2.0 * p * square)).clamp(-1.0, 1.0);
     2.0 * p * (cosine.acos() / 3.0).cos()
+}
+
+/// Most steps of Newton's method for an eigenvalue.
+const NEWTON_STEPS: usize = 8;
+
+/// Whether the largest eigenvalue is safely above `threshold`, which costs less than the eigenvalue; where it is not, it may be either.
+pub(crate) fn is_ordered_above(q: &Tensor5, threshold: f64) -> bool {
+    let square = contract(q, q) / 6.0;
+    // right of the cubic's minimum it is negative up to the largest root
+    let cubic = threshold * (threshold * threshold - 3.0 * square) - determinant(q);
+    threshold * threshold >= square && cubic < -1e-9 * square * threshold
+}
+
+fn determinant(q: &Tensor5) -> f64 {
+    let [xx, xy, xz, yy, yz] = *q;
+    let zz = -xx - yy;
+    xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz)
 }
 
 #[cfg(test)]
@@ -143,6 +183,40 @@ mod tests {
             1.0,
             max_relative = 1e-12
         );
+    }
+
+    #[test]
+    fn eigenvalues_are_those_of_the_matrix() {
+        let mut state = 1_u64;
+        let mut next = || {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
+            (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+        };
+        for k in 0..2000 {
+            let mut q: Tensor5 = std::array::from_fn(|_| next());
+            if k % 3 == 0 {
+                // nearly uniaxial, prolate and oblate
+                let small = q.map(|x| 1e-3 * x);
+                let sign = if k % 2 == 0 { 0.5 } else { -0.5 };
+                let [x, y, z] = [next(), next(), next()];
+                let norm = (x * x + y * y + z * z).sqrt();
+                q = uniaxial(sign, [x / norm, y / norm, z / norm]);
+                q.iter_mut().zip(small).for_each(|(a, b)| *a += b);
+            }
+            let truth = matrix(&q).symmetric_eigen().eigenvalues.max();
+            let found = largest_eigenvalue(&q);
+            assert!((found - truth).abs() < 1e-12, "{q:?}: {found} {truth}");
+            for threshold in [0.8 * truth, truth - 1e-6, truth + 1e-6] {
+                if is_ordered_above(&q, threshold) {
+                    assert!(truth > threshold);
+                }
+            }
+        }
+        let q = uniaxial(0.5, [0.0, 0.6, 0.8]);
+        assert!(is_ordered_above(&q, 0.35) && !is_ordered_above(&q, 0.51));
+        assert!(!is_ordered_above(&[0.0; 5], 0.35));
     }
 
     #[test]

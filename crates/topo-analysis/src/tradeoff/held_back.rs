@@ -10,7 +10,7 @@ use crate::wish::{Load, Measured, Point, Wish, grant};
 
 /// Accuracies asked for in turn.
 const RODS: [f64; 3] = [0.1, 0.05, 0.03];
-const COLLOIDS: [f64; 3] = [0.05, 0.02, 0.01];
+const COLLOIDS: [f64; 3] = [0.1, 0.03, 0.02];
 
 /// One run by wish beside its reference.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
