@@ -56,10 +56,20 @@ pub enum Command {
   cargo xtask tradeoff --quality standard     more cases, finer settings
   cargo xtask tradeoff --held-back            do the error estimates of `run --accuracy` hold?")]
     Tradeoff(TradeoffArgs),
+    /// Measure what each term of a scene costs in time and bytes, with it and without it.
+    #[command(after_help = "Examples:
+  cargo xtask cost                       small runs: about a minute
+  cargo xtask cost --quality standard")]
+    Cost(CostArgs),
     /// Compare the numbers of two results folders to the byte, but for what tells how long they took.
     #[command(after_help = "Example:
   cargo xtask compare results results-again")]
     Compare(CompareArgs),
+    /// Compute on one thread, on two, and killed at random moments, and compare the numbers to the byte.
+    #[command(after_help = "Examples:
+  cargo xtask determinism                           all that the draft figures draw: three times some minutes
+  cargo xtask determinism scenes/elastic-quick.toml    a scene instead")]
+    Determinism(DeterminismArgs),
     /// Write the shapes and fields of a case for ParaView, PyVista, meshio, numpy or nemaktis.
     ///
     /// A fibre becomes a line with arc length, tangent, curvature, twist, stretch and energy density, once charged and over
@@ -71,6 +81,11 @@ pub enum Command {
   cargo xtask run scenes/nematic-quick.toml --fields --out fields
   cargo xtask export fields/nematic/q02_r15_h1.5_cut-link_f64_flow-off --format nemaktis")]
     Export(ExportArgs),
+    /// Feed every parser with made-up files: needs cargo-fuzz.
+    #[command(after_help = "Examples:
+  cargo xtask fuzz                        ten minutes for each parser
+  cargo xtask fuzz --minutes 60 vect xyz  an hour for each of two")]
+    Fuzz(FuzzArgs),
     /// The knot generator: tighten a knot, name a curve, look at the table.
     Knot(KnotArgs),
     /// Run every test, doc test and example of the workspace.
@@ -163,6 +178,25 @@ pub struct WorkArgs {
     pub fresh: bool,
 }
 
+/// Options of `determinism`.
+#[derive(Debug, Args)]
+pub struct DeterminismArgs {
+    /// A scene, instead of all that figures draw.
+    pub scene: Option<PathBuf>,
+    /// How much to compute.
+    #[arg(long, value_enum, default_value_t = Quality::Draft)]
+    pub quality: Quality,
+    /// How often one of the runs is killed.
+    #[arg(long, value_name = "N", default_value_t = 10)]
+    pub kills: u32,
+    /// Seed of the moments.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub seed: u64,
+    /// Folder of the results.
+    #[arg(long, value_name = "DIR", default_value = "results")]
+    pub out: PathBuf,
+}
+
 /// Options of `export`.
 #[derive(Debug, Args)]
 pub struct ExportArgs {
@@ -216,6 +250,34 @@ pub struct TradeoffArgs {
     /// Write what was measured into the table from which scenes with `accuracy` or `budget` take their settings.
     #[arg(long, conflicts_with = "held_back")]
     pub record: bool,
+}
+
+/// Options of `fuzz`.
+#[derive(Debug, Args)]
+pub struct FuzzArgs {
+    /// Only these parsers, by the names in `fuzz/Cargo.toml`.
+    #[arg(value_name = "TARGET")]
+    pub targets: Vec<String>,
+    /// Minutes for each.
+    #[arg(long, value_name = "M", default_value_t = 10.0)]
+    pub minutes: f64,
+    /// Only make the table, from what earlier runs printed.
+    #[arg(long)]
+    pub report: bool,
+    /// Folder of the results.
+    #[arg(long, value_name = "DIR", default_value = "results")]
+    pub out: PathBuf,
+}
+
+/// Options of `cost`.
+#[derive(Debug, Args)]
+pub struct CostArgs {
+    /// How large the runs are: draft or standard.
+    #[arg(long, value_enum, default_value_t = Quality::Draft)]
+    pub quality: Quality,
+    /// Folder of the results.
+    #[arg(long, value_name = "DIR", default_value = "results")]
+    pub out: PathBuf,
 }
 
 /// Options of `compare`.

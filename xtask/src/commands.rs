@@ -5,8 +5,11 @@ mod bench;
 mod cargo;
 mod ci;
 mod compare;
+mod cost;
+mod determinism;
 mod export;
 mod figures;
+mod fuzz;
 mod knot;
 mod packages;
 mod run;
@@ -29,7 +32,10 @@ pub fn dispatch(cli: Cli) -> Result<(), XtaskError> {
         Command::Stability(args) => stability::run(&args),
         Command::Tradeoff(args) => tradeoff::run(&args),
         Command::Compare(args) => compare::run(&args),
+        Command::Cost(args) => cost::run(&args),
+        Command::Determinism(args) => determinism::run(&args),
         Command::Export(args) => export::run(&args),
+        Command::Fuzz(args) => fuzz::run(&args),
         Command::Knot(args) => knot::run(&args),
         Command::Test(args) => test::run(&args),
         Command::Ci => ci::run(),

@@ -18,6 +18,7 @@ mod scene;
 mod stability;
 mod statistics;
 mod table;
+mod terms;
 mod timeline;
 mod times;
 mod tradeoff;
@@ -42,7 +43,8 @@ pub use progress::{Event, Shard, SweepSettings, with_jobs};
 pub use scene::Scene;
 pub use stability::{Effort, ExtremeSystem, StabilityRow, n_extremes, stability};
 pub use statistics::{Spread, median, quantile};
-pub use table::{KnotRow, SweepRow, read_table, write_table};
+pub use table::{KnotRow, SweepRow, parse_table, read_table, table_bytes, write_table};
+pub use terms::{TermCost, term_costs};
 pub use timeline::{Timeline, TimelineSettings, TypedSample, UNKNOT};
 pub use times::{DischargeTimes, ELASTIC_SHARES, Interpolated};
 pub use tradeoff::{

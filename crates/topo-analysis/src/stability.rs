@@ -2,7 +2,7 @@
 
 mod knots;
 mod nematic;
-mod rod;
+pub(crate) mod rod;
 mod watch;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};

@@ -108,20 +108,25 @@ pub(crate) fn push_warning(warnings: &mut String, text: &str) {
 /// # Errors
 /// A file that cannot be written, with its path and the remedy.
 pub fn write_table<T: Serialize>(path: &Path, rows: &[T]) -> Result<(), AnalysisError> {
+    Ok(write_atomic_bytes(path, &table_bytes(path, rows)?)?)
+}
+
+/// The bytes that [`write_table`] writes; `path` names them in messages.
+///
+/// # Errors
+/// A row that cannot stand in a table.
+pub fn table_bytes<T: Serialize>(path: &Path, rows: &[T]) -> Result<Vec<u8>, AnalysisError> {
+    let wrong = |source| AnalysisError::Table {
+        path: path.to_owned(),
+        source,
+    };
     let mut writer = csv::Writer::from_writer(Vec::new());
     for row in rows {
-        writer
-            .serialize(row)
-            .map_err(|source| AnalysisError::Table {
-                path: path.to_owned(),
-                source,
-            })?;
+        writer.serialize(row).map_err(wrong)?;
     }
-    let bytes = writer.into_inner().map_err(|e| AnalysisError::Table {
-        path: path.to_owned(),
-        source: e.into_error().into(),
-    })?;
-    Ok(write_atomic_bytes(path, &bytes)?)
+    writer
+        .into_inner()
+        .map_err(|e| wrong(e.into_error().into()))
 }
 
 /// Reads rows of a CSV with a header.
@@ -133,11 +138,24 @@ pub fn read_table<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>, AnalysisEr
         path: path.to_owned(),
         source,
     };
-    csv::Reader::from_path(path)
-        .map_err(wrong)?
-        .deserialize()
-        .collect::<Result<_, _>>()
-        .map_err(wrong)
+    let bytes = std::fs::read(path).map_err(|e| wrong(e.into()))?;
+    parse_table(path, &bytes)
+}
+
+/// Reads rows from the bytes of a CSV with a header; `path` names it in messages.
+///
+/// # Errors
+/// As [`read_table`], but for those of the file system.
+pub fn parse_table<T: DeserializeOwned>(
+    path: &Path,
+    bytes: &[u8],
+) -> Result<Vec<T>, AnalysisError> {
+    let rows = csv::Reader::from_reader(bytes).into_deserialize();
+    rows.collect::<Result<_, _>>()
+        .map_err(|source| AnalysisError::Table {
+            path: path.to_owned(),
+            source,
+        })
 }
 
 #[cfg(test)]

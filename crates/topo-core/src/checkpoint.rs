@@ -27,6 +27,18 @@ pub fn save_checkpoint<T: Serialize>(
     schema: &str,
     value: &T,
 ) -> Result<(), FileError> {
+    write_atomic_bytes(path, &checkpoint_bytes(path, schema, value)?)
+}
+
+/// The bytes that [`save_checkpoint`] writes; `path` names them in messages.
+///
+/// # Errors
+/// [`FileError::Unwritable`] for a value without an encoding.
+pub fn checkpoint_bytes<T: Serialize>(
+    path: &Path,
+    schema: &str,
+    value: &T,
+) -> Result<Vec<u8>, FileError> {
     let unwritable = |what: String| FileError::Unwritable {
         path: path.to_owned(),
         what,
@@ -43,7 +55,7 @@ pub fn save_checkpoint<T: Serialize>(
     bytes.extend_from_slice(&payload);
     let digest = blake3::hash(&bytes);
     bytes.extend_from_slice(digest.as_bytes());
-    write_atomic_bytes(path, &bytes)
+    Ok(bytes)
 }
 
 /// Reads what [`save_checkpoint`] wrote with the same `schema`.
@@ -55,11 +67,26 @@ pub fn save_checkpoint<T: Serialize>(
 /// `every_flaw_is_found_and_named`
 pub fn load_checkpoint<T: DeserializeOwned>(path: &Path, schema: &str) -> Result<T, FileError> {
     let bytes = std::fs::read(path).map_err(|e| FileError::io("read", path, e))?;
+    parse_checkpoint(path, &bytes, schema)
+}
+
+/// Reads the bytes that [`save_checkpoint`] wrote with the same `schema`; `path` names them in messages.
+///
+/// # Errors
+/// As [`load_checkpoint`], but for those of the file system.
+///
+/// # Validation
+/// `every_flaw_is_found_and_named`
+pub fn parse_checkpoint<T: DeserializeOwned>(
+    path: &Path,
+    bytes: &[u8],
+    schema: &str,
+) -> Result<T, FileError> {
     let corrupt = |what: &str| FileError::Corrupt {
         path: path.to_owned(),
         what: what.to_owned(),
     };
-    let mut reader = Reader { rest: &bytes, path };
+    let mut reader = Reader { rest: bytes, path };
     let magic = reader.take(MAGIC.len().min(bytes.len()))?;
     if !MAGIC.starts_with(magic) {
         return Err(FileError::NotACheckpoint {

@@ -179,6 +179,18 @@ impl StepControl {
         self
     }
 
+    /// Whether `other` is this control some steps later: the same settings, and a next step within their limits.
+    ///
+    /// A control that was read from a file should be asked this before it goes on.
+    pub fn leads_to(&self, other: &Self) -> bool {
+        let later = Self {
+            dt: other.dt,
+            just_rejected: other.just_rejected,
+            ..self.clone()
+        };
+        later == *other && (self.dt_min..=self.dt_max).contains(&other.dt)
+    }
+
     /// The tolerance.
     pub fn tolerance(&self) -> f64 {
         self.tolerance

@@ -54,6 +54,7 @@ pub struct EnergyEvent {
 /// # Validation
 /// `books_balance`, `a_million_small_losses_add_up`
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Unchecked")]
 pub struct Ledger {
     terms: Vec<Name>,
     stored: Vec<f64>,
@@ -64,6 +65,50 @@ pub struct Ledger {
     events: Vec<EnergyEvent>,
     stored_start: Option<f64>,
     largest_stored: f64,
+}
+
+#[derive(Deserialize)]
+struct Unchecked {
+    terms: Vec<Name>,
+    stored: Vec<f64>,
+    channels: Vec<Name>,
+    dissipated: Vec<CompensatedSum>,
+    work: CompensatedSum,
+    removed: CompensatedSum,
+    events: Vec<EnergyEvent>,
+    stored_start: Option<f64>,
+    largest_stored: f64,
+}
+
+impl TryFrom<Unchecked> for Ledger {
+    type Error = &'static str;
+    fn try_from(raw: Unchecked) -> Result<Self, &'static str> {
+        if raw.stored.len() != raw.terms.len() || raw.dissipated.len() != raw.channels.len() {
+            return Err("the energy account has other names than numbers");
+        }
+        let sums = raw.dissipated.iter().chain([&raw.work, &raw.removed]);
+        let events = raw.events.iter().flat_map(|e| [e.time, e.removed]);
+        let numbers = sums
+            .flat_map(|s| [s.sum, s.lost])
+            .chain(events)
+            .chain(raw.stored.iter().copied())
+            .chain(raw.stored_start)
+            .chain([raw.largest_stored]);
+        if numbers.into_iter().any(|x| !x.is_finite()) {
+            return Err("the energy account has a number that is not finite");
+        }
+        Ok(Self {
+            terms: raw.terms,
+            stored: raw.stored,
+            channels: raw.channels,
+            dissipated: raw.dissipated,
+            work: raw.work,
+            removed: raw.removed,
+            events: raw.events,
+            stored_start: raw.stored_start,
+            largest_stored: raw.largest_stored,
+        })
+    }
 }
 
 impl Ledger {

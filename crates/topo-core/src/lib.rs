@@ -27,7 +27,7 @@ mod units;
 pub use check::{
     InvalidValue, finite, finite_difference_gradient, in_range, non_negative, positive,
 };
-pub use checkpoint::{load_checkpoint, save_checkpoint};
+pub use checkpoint::{checkpoint_bytes, load_checkpoint, parse_checkpoint, save_checkpoint};
 pub use control::{Rejection, RejectionCounts, StepControl};
 pub use cpu::CpuClock;
 pub use curve::{Polyline, average_crossing_number, writhe};

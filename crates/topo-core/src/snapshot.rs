@@ -1,11 +1,11 @@
 //! Snapshots: vertices and quantities along them as a table that any program reads.
 
-use std::fmt::Display;
+use std::fmt::{Display, Write as _};
 use std::path::Path;
 
 use nalgebra::Vector3;
 
-use crate::file::{FileError, write_atomic};
+use crate::file::{FileError, write_atomic_bytes};
 
 /// Vertices with named columns of one number a vertex.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -56,6 +56,14 @@ impl Snapshot {
     /// # Validation
     /// `reads_back_what_it_wrote`
     pub fn write(&self, path: &Path) -> Result<(), FileError> {
+        write_atomic_bytes(path, self.text(path)?.as_bytes())
+    }
+
+    /// The text that [`write`](Self::write) writes; `path` names it in messages.
+    ///
+    /// # Errors
+    /// As [`write`](Self::write), but for those of the file system.
+    pub fn text(&self, path: &Path) -> Result<String, FileError> {
         let unwritable = |what: String| {
             Err(FileError::Unwritable {
                 path: path.to_owned(),
@@ -90,21 +98,21 @@ impl Snapshot {
         if numbers.into_iter().any(|x| !x.is_finite()) {
             return unwritable("a number is not finite: the run that made it is broken".to_owned());
         }
-        write_atomic(path, |w| {
-            write!(w, "x,y,z")?;
-            for (name, _) in &self.columns {
-                write!(w, ",{name}")?;
+        let mut text = "x,y,z".to_owned();
+        for (name, _) in &self.columns {
+            text.push(',');
+            text.push_str(name);
+        }
+        text.push('\n');
+        for (i, v) in self.vertices.iter().enumerate() {
+            // Writing to a string cannot fail.
+            let _ = write!(text, "{:?},{:?},{:?}", v.x, v.y, v.z);
+            for (_, values) in &self.columns {
+                let _ = write!(text, ",{:?}", values[i]);
             }
-            writeln!(w)?;
-            for (i, v) in self.vertices.iter().enumerate() {
-                write!(w, "{:?},{:?},{:?}", v.x, v.y, v.z)?;
-                for (_, values) in &self.columns {
-                    write!(w, ",{:?}", values[i])?;
-                }
-                writeln!(w)?;
-            }
-            Ok(())
-        })
+            text.push('\n');
+        }
+        Ok(text)
     }
 
     /// Reads a table whose first columns are `x,y,z`.
@@ -116,6 +124,14 @@ impl Snapshot {
     /// `flaws_are_located`
     pub fn read(path: &Path) -> Result<Self, FileError> {
         let text = std::fs::read_to_string(path).map_err(|e| FileError::io("read", path, e))?;
+        Self::parse(path, &text)
+    }
+
+    /// Reads such a table from a text; `path` names it in messages.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read), but for those of the file system.
+    pub fn parse(path: &Path, text: &str) -> Result<Self, FileError> {
         let flaw = |line: usize, column: usize, what: &dyn Display| FileError::Table {
             path: path.to_owned(),
             line,

@@ -17,6 +17,24 @@ const PER_UNIT: f64 = 3.0;
 /// Largest generator served: a word of this size already needs thousands of vertices.
 const LARGEST_GENERATOR: i32 = 64;
 
+/// The letters of a braid word written as integers with blanks, commas or brackets between them, such as `1 -2 1 -2`.
+///
+/// # Errors
+/// [`KnotError::Letter`] naming what is no integer.
+///
+/// # Validation
+/// `words_are_read_from_text`.
+pub fn parse_braid(text: &str) -> Result<Vec<i32>, KnotError> {
+    text.split(|c: char| c.is_whitespace() || ",[]".contains(c))
+        .filter(|letter| !letter.is_empty())
+        .map(|letter| {
+            letter.parse().map_err(|_| KnotError::Letter {
+                letter: letter.to_owned(),
+            })
+        })
+        .collect()
+}
+
 /// Number of components of the closure of a braid word.
 ///
 /// # Errors
@@ -197,6 +215,20 @@ mod tests {
             Err(KnotError::GeneratorTooLarge { .. })
         ));
         assert_eq!(n_components(&[1, -2, 1, -2, 1, -2]).expect("a link"), 3);
+    }
+
+    #[test]
+    fn words_are_read_from_text() {
+        assert_eq!(parse_braid("[1 -2, 1,-2]").expect("a word"), [1, -2, 1, -2]);
+        assert_eq!(parse_braid(" ").expect("no letter"), [0; 0]);
+        for (text, letter) in [
+            ("1 a 1", "`a`"),
+            ("1 2.5", "`2.5`"),
+            ("9999999999", "`9999999999`"),
+        ] {
+            let error = parse_braid(text).expect_err(text).to_string();
+            assert!(error.contains(letter), "{error}");
+        }
     }
 
     #[test]

@@ -113,8 +113,14 @@ pub fn curve_text(curve: &Polyline, format: CurveFormat) -> String {
     text
 }
 
-/// The components in the text of a file.
-pub(crate) fn parse_components(
+/// The components in the text of a file; `path` names it in messages.
+///
+/// # Errors
+/// As [`read_components`], but for those of the file system.
+///
+/// # Validation
+/// `curves_survive_every_format`.
+pub fn parse_components(
     path: &Path,
     text: &str,
     format: CurveFormat,

@@ -21,6 +21,12 @@ pub enum KnotError {
         "the braid word is empty; give generators such as [1, 1, 1] (the trefoil), or a polygon"
     )]
     EmptyBraid,
+    /// A letter of the braid word is no integer.
+    #[error("`{letter}` is no generator of a braid; give integers such as \"1 -2 1 -2\"")]
+    Letter {
+        /// What was given.
+        letter: String,
+    },
     /// A letter of the braid word is zero.
     #[error(
         "generator {position} of the braid word is 0; generators count from 1, a negative one is the inverse"

@@ -20,9 +20,10 @@ mod table;
 mod thickness;
 mod tighten;
 
-pub use braid::{closed_braid, n_components};
+pub use braid::{closed_braid, n_components, parse_braid};
 pub use curve_file::{
-    CurveComponent, CurveFormat, curve_text, read_components, read_curve, write_curve,
+    CurveComponent, CurveFormat, curve_text, parse_components, read_components, read_curve,
+    write_curve,
 };
 pub use error::KnotError;
 pub use ideal::{ideal, is_kept};

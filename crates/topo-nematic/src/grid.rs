@@ -17,10 +17,25 @@ pub enum Faces {
 ///
 /// Cell (i, j, k) has its centre at ((i + 1/2) h, (j + 1/2) h, (k + 1/2) h) and the index (k n_y + j) n_x + i: x runs fastest.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Unchecked")]
 pub struct Grid {
     cells: [usize; 3],
     spacing: f64,
     faces: [Faces; 3],
+}
+
+#[derive(Deserialize)]
+struct Unchecked {
+    cells: [usize; 3],
+    spacing: f64,
+    faces: [Faces; 3],
+}
+
+impl TryFrom<Unchecked> for Grid {
+    type Error = GridError;
+    fn try_from(raw: Unchecked) -> Result<Self, GridError> {
+        Self::new(raw.cells, raw.spacing, raw.faces)
+    }
 }
 
 /// Why a grid cannot be.

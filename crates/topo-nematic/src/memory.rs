@@ -11,6 +11,8 @@ pub struct ByteAccount {
     pub fields: u64,
     /// Lists of cells and wall values.
     pub geometry: u64,
+    /// Lists of the second elastic constant.
+    pub second: u64,
     /// Velocities, forces and solvers of the flow.
     pub flow: u64,
 }
@@ -18,7 +20,7 @@ pub struct ByteAccount {
 impl ByteAccount {
     /// All together.
     pub fn total(&self) -> u64 {
-        self.fields + self.geometry + self.flow
+        self.fields + self.geometry + self.second + self.flow
     }
 }
 

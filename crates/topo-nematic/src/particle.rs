@@ -7,9 +7,23 @@ use crate::{Faces, Grid, NematicError};
 
 /// A sphere that is held in place.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Unchecked")]
 pub struct Particle {
     centre: [f64; 3],
     radius: f64,
+}
+
+#[derive(Deserialize)]
+struct Unchecked {
+    centre: [f64; 3],
+    radius: f64,
+}
+
+impl TryFrom<Unchecked> for Particle {
+    type Error = NematicError;
+    fn try_from(raw: Unchecked) -> Result<Self, NematicError> {
+        Self::new(raw.centre, raw.radius)
+    }
 }
 
 impl Particle {

@@ -22,6 +22,17 @@ pub(crate) struct Clock {
     pub n_steps: u64,
 }
 
+impl Clock {
+    /// Whether a relaxation can go on with it.
+    pub(crate) fn is_sound(&self) -> bool {
+        self.dt.is_finite()
+            && self.dt > 0.0
+            && (0.0..=1.0).contains(&self.mixing)
+            && self.n_downhill < u32::MAX / 2
+            && self.n_steps < 1 << 53
+    }
+}
+
 /// Positions and velocities of a relaxation in progress, in the kernel's layout.
 ///
 /// The method is `topo_core::Fire`'s, written in two passes over memory: the molecular field with the sums that decide on the next

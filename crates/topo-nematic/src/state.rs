@@ -10,10 +10,25 @@ use crate::{Faces, Grid, NematicError, Particle};
 /// Five components (xx, xy, xz, yy, yz), one after the other, each of n_cells numbers. Cells whose centre lies inside the particle
 /// hold what was there last and mean nothing.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Unchecked")]
 pub struct NematicState {
     grid: Grid,
     particle: Option<Particle>,
     q: Vec<f64>,
+}
+
+#[derive(Deserialize)]
+struct Unchecked {
+    grid: Grid,
+    particle: Option<Particle>,
+    q: Vec<f64>,
+}
+
+impl TryFrom<Unchecked> for NematicState {
+    type Error = NematicError;
+    fn try_from(raw: Unchecked) -> Result<Self, NematicError> {
+        Self::new(raw.grid, raw.particle, raw.q)
+    }
 }
 
 impl NematicState {

@@ -57,6 +57,8 @@ pub struct RodModel {
     rate_change: Vec<f64>,
     stamps: Cell<u64>,
     n_evaluations: u64,
+    n_term_evaluations: u64,
+    n_friction_evaluations: u64,
     least_distance: f64,
 }
 
@@ -170,6 +172,8 @@ impl RodModel {
             near: Vec::new(),
             stamps: Cell::new(state.stamp()),
             n_evaluations: 0,
+            n_term_evaluations: 0,
+            n_friction_evaluations: 0,
             least_distance: f64::INFINITY,
             terms,
         })
@@ -243,6 +247,7 @@ impl RodModel {
         };
         self.at.force.reset(state);
         self.at.energies.clear();
+        self.n_term_evaluations += 1;
         for term in &self.terms {
             let energy = term.add_force(at, &mut self.at.force);
             self.at.energies.push(energy);
@@ -256,6 +261,7 @@ impl RodModel {
             }
         }
         if let Some(friction) = self.friction {
+            self.n_friction_evaluations += 1;
             friction.couplings(self.pairs.active(), &mut self.at.couplings);
         }
         if !self.at.energies.iter().sum::<f64>().is_finite() {

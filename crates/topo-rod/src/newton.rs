@@ -289,6 +289,11 @@ impl NewtonTwist {
         self.viscosity.n_factorisations()
     }
 
+    pub(crate) fn n_bytes(&self) -> usize {
+        let vectors = self.cosine.capacity() + self.work.capacity();
+        self.viscosity.n_bytes() + size_of::<f64>() * vectors
+    }
+
     pub(crate) fn prepare(
         &mut self,
         chain: Chain,

@@ -255,6 +255,16 @@ pub struct TwistViscosity {
 }
 
 impl TwistViscosity {
+    /// Bytes held by the matrix, its factor and where their entries are.
+    pub fn n_bytes(&self) -> usize {
+        let matrix = self
+            .solver
+            .as_ref()
+            .map_or(0, |s| s.n_nonzeros() + s.n_factor_nonzeros());
+        size_of::<f64>() * matrix
+            + size_of::<usize>() * (self.diagonal.capacity() + self.next.capacity())
+    }
+
     /// For a rod whose edges marked in `fixed` have a prescribed rotation.
     pub fn new(fixed: Vec<bool>) -> Self {
         Self {

@@ -37,7 +37,7 @@ pub fn run(args: &CompareArgs) -> Result<(), XtaskError> {
 }
 
 /// A line for each file that is not the same in both folders.
-fn differences(first: &Path, second: &Path) -> Result<Vec<String>, XtaskError> {
+pub(super) fn differences(first: &Path, second: &Path) -> Result<Vec<String>, XtaskError> {
     let (a, b) = (files(first)?, files(second)?);
     let mut lines = Vec::new();
     for name in a.union(&b) {
@@ -59,7 +59,7 @@ fn differences(first: &Path, second: &Path) -> Result<Vec<String>, XtaskError> {
 }
 
 /// Paths of the files below a folder, relative to it; what a command left unfinished is not among them.
-fn files(folder: &Path) -> Result<BTreeSet<PathBuf>, XtaskError> {
+pub(super) fn files(folder: &Path) -> Result<BTreeSet<PathBuf>, XtaskError> {
     let mut found = BTreeSet::new();
     let mut open = vec![PathBuf::new()];
     while let Some(inner) = open.pop() {

@@ -265,6 +265,62 @@ impl ElasticScene {
             .map_err(|e| refuse(e.into()))?;
         Ok(scene)
     }
+
+    /// The scene as the text of a file with every value written out; [`parse`](Self::parse) gives the same scene back.
+    ///
+    /// A file cannot say the folder of the tables, nor what only presets set: those must be a file's own.
+    ///
+    /// # Validation
+    /// `elastic_scenes_come_back_as_written`, `poisson_ratios_come_back`
+    pub fn text(&self) -> String {
+        let rod = &self.rod;
+        let file = File {
+            rod: RodTable {
+                knot: Names::List(self.knots.clone()),
+                slenderness: rod.slenderness,
+                reading: rod.reading,
+                twist: (!self.twists.is_empty()).then(|| Numbers::List(self.twists.clone())),
+                poisson_ratio: poisson_ratio(rod.twist_ratio),
+                stretch_ratio: rod.stretch_ratio,
+                contact: rod.contact,
+                friction: rod.friction,
+                imperfection: self.imperfection,
+                seed: self.seed,
+            },
+            charge: ChargeTable {
+                duration: Some(self.charge.duration),
+            },
+            discharge: DischargeTable {
+                cuts: Some(self.cuts),
+                until_released: Some(self.discharge.until_released),
+                longest: Some(self.discharge.longest),
+                closures: Some(self.timeline.closures),
+                ends: self.discharge.ends,
+            },
+            accuracy: AccuracyTable {
+                preset: self.preset,
+                edges: Some(rod.n_edges),
+                tolerance: Some(self.accuracy.tolerance),
+                gamma: Some(self.accuracy.gamma),
+                integrator: Some(self.accuracy.integrator),
+                reuse: Some(self.accuracy.reuse),
+                max_steps: Some(self.accuracy.max_steps),
+            },
+        };
+        // Tables of numbers and names always have a text.
+        toml::to_string(&file).unwrap_or_default()
+    }
+}
+
+/// Poisson's ratio whose twist ratio 1/(1 + ν) is the one given, to the bit where there is one.
+fn poisson_ratio(twist_ratio: f64) -> f64 {
+    let near = 1.0 / twist_ratio - 1.0;
+    // 1 + ν is a multiple of this: its neighbours are all that rounding can have meant.
+    let spacing = 0.5 * f64::EPSILON;
+    (0..16)
+        .flat_map(|k| [near + f64::from(k) * spacing, near - f64::from(k) * spacing])
+        .find(|ratio| 1.0 / (1.0 + ratio) == twist_ratio)
+        .unwrap_or(near)
 }
 
 #[cfg(test)]

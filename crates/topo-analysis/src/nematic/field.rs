@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
-use topo_core::{load_checkpoint, save_checkpoint};
+use topo_core::{load_checkpoint, parse_checkpoint, save_checkpoint};
 use topo_nematic::{FlowCoupling, NematicState, Tensor5};
 
 use crate::AnalysisError;
@@ -75,13 +75,28 @@ impl FieldSnapshot {
     /// # Errors
     /// A file that cannot be read, is no field, or is damaged.
     pub fn read(path: &Path) -> Result<Self, AnalysisError> {
-        let field: Self = load_checkpoint(path, SCHEMA)?;
-        let n = field.cells.iter().product::<usize>();
-        let whole = field.fluid.len() == n
-            && field.q.len() == 5 * n
-            && field.velocity.as_ref().is_none_or(|u| u.len() == 3 * n);
+        load_checkpoint::<Self>(path, SCHEMA)?.checked(path)
+    }
+
+    /// Reads the bytes of such a file; `path` names it in messages.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read), but for those of the file system.
+    pub fn parse(path: &Path, bytes: &[u8]) -> Result<Self, AnalysisError> {
+        parse_checkpoint::<Self>(path, bytes, SCHEMA)?.checked(path)
+    }
+
+    fn checked(self, path: &Path) -> Result<Self, AnalysisError> {
+        let n = self.fluid.len();
+        let cells = self
+            .cells
+            .iter()
+            .try_fold(1, |n: usize, k| n.checked_mul(*k));
+        let whole = cells == Some(n)
+            && self.q.len() == 5 * n
+            && self.velocity.as_ref().is_none_or(|u| u.len() == 3 * n);
         if whole {
-            Ok(field)
+            Ok(self)
         } else {
             Err(topo_core::FileError::Corrupt {
                 path: path.to_owned(),

@@ -20,8 +20,8 @@
 
 use std::path::Path;
 
-use serde::Deserialize;
 use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
 use topo_nematic::{
     ChargeSettings, DischargeSettings, FlowParameters, NematicAccuracy, NematicParameters,
     SwitchSettings,
@@ -94,6 +94,15 @@ impl NematicScene {
             remedy: remedy.to_owned(),
         };
         let windings = |key: &str, numbers: &Numbers| {
+            if let Numbers::Range { n, .. } = numbers
+                && !(1..=10_000).contains(n)
+            {
+                return Err(value(
+                    &format!("{key}.n"),
+                    n.to_string(),
+                    "ask for 1 to 10000 windings",
+                ));
+            }
             numbers
                 .values()
                 .into_iter()
@@ -130,6 +139,13 @@ impl NematicScene {
                 "keep either q or pattern",
             ));
         }
+        if file.material.is_some() && colloid.contains_key("material") {
+            return Err(value(
+                "nematic.material",
+                "given together with [material]".into(),
+                "keep one of them",
+            ));
+        }
         colloid.extend(file.material.map(|m| ("material".to_owned(), m)));
         let nematic: NematicParameters = settings("[nematic]", colloid, path)?;
         let (flow, flowing) = match file.flow {
@@ -144,6 +160,18 @@ impl NematicScene {
                 (Some(settings), flowing)
             }
         };
+        if file.discharge.flow.is_some() {
+            return Err(value(
+                "discharge.flow",
+                "given".into(),
+                "write the table [flow] instead",
+            ));
+        }
+        let refuse = |source| AnalysisError::Nematic {
+            case: path.display().to_string(),
+            source,
+        };
+        nematic.clone().checked().map_err(refuse)?;
         let scene = Self {
             folder: "nematic".to_owned(),
             charges,
@@ -156,15 +184,55 @@ impl NematicScene {
             accuracy,
             wish,
         };
-        scene
-            .accuracy
-            .checked()
-            .map_err(|source| AnalysisError::Nematic {
-                case: path.display().to_string(),
-                source,
-            })?;
+        scene.accuracy.checked().map_err(refuse)?;
         Ok(scene)
     }
+
+    /// The scene as the text of a file with every value written out; [`parse`](Self::parse) gives the same scene back.
+    ///
+    /// A file cannot say the folder of the tables, nor a pattern besides windings.
+    ///
+    /// # Validation
+    /// `nematic_scenes_come_back_as_written`
+    pub fn text(&self) -> String {
+        let numbers = |charges: &[u32]| {
+            let list = charges.iter().map(|q| toml::Value::Float(f64::from(*q)));
+            toml::Value::Array(list.collect())
+        };
+        let mut nematic = table_of(&self.nematic);
+        let material = nematic.remove("material");
+        if !self.charges.is_empty() {
+            nematic.remove("pattern");
+            nematic.insert("q".to_owned(), numbers(&self.charges));
+        }
+        let mut file = toml::Table::new();
+        let mut put = |name: &str, value: toml::Table| {
+            file.insert(name.to_owned(), toml::Value::Table(value));
+        };
+        put("nematic", nematic);
+        if let Some(toml::Value::Table(material)) = material {
+            put("material", material);
+        }
+        put("charge", table_of(&self.charge));
+        put("switch", table_of(&self.switch));
+        put("discharge", table_of(&self.discharge));
+        if let Some(flow) = &self.flow {
+            let mut flow = table_of(flow);
+            if let Some(charges) = &self.flowing {
+                flow.insert("q".to_owned(), numbers(charges));
+            }
+            put("flow", flow);
+        }
+        put("accuracy", table_of(&self.accuracy));
+        // Tables of numbers and names always have a text.
+        toml::to_string(&file).unwrap_or_default()
+    }
+}
+
+/// Settings as a table.
+fn table_of<T: Serialize>(settings: &T) -> toml::Table {
+    // Structures of numbers, names and lists always have one.
+    toml::Table::try_from(settings).unwrap_or_default()
 }
 
 /// The settings of a table; keys that nobody knows are refused with the table's name.

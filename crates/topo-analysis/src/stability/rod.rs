@@ -231,7 +231,8 @@ fn closed(point: impl Fn(f64) -> [f64; 3]) -> (Polyline, f64) {
     (curve, ropelength)
 }
 
-fn trefoil() -> (Polyline, f64) {
+/// A trefoil and its ropelength (that of the curve, not of the tight knot).
+pub(crate) fn trefoil() -> (Polyline, f64) {
     closed(trefoil_at)
 }
 

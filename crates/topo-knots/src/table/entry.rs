@@ -15,6 +15,9 @@ use crate::{
 /// Most vertices of a start curve: many more than any level of the tightening has.
 const LONGEST_START: usize = 4000;
 
+/// Largest signature, power or number of coefficients of a file: far beyond any knot whose invariants can be computed.
+const LARGEST_NUMBER: u32 = 10_000;
+
 /// Whether a knot differs from its mirror image.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -96,8 +99,14 @@ struct FileReference {
 }
 
 impl KnotEntry {
-    /// Reads an entry; `load` opens files named in it, relative to the entry's own folder.
-    pub(super) fn parse(
+    /// Reads an entry from the text of its file; `path` names it, and `load` opens files named in it, relative to its own folder.
+    ///
+    /// # Errors
+    /// [`KnotError::Table`] naming the key and the remedy, and those of `load`.
+    ///
+    /// # Validation
+    /// `files_with_faults_are_named`.
+    pub fn parse(
         path: &Path,
         text: &str,
         load: &dyn Fn(&Path) -> Result<String, KnotError>,
@@ -122,23 +131,29 @@ impl KnotEntry {
                 file.name
             )));
         }
-        let at_minus_one: i64 = alexander
-            .iter()
+        // Any sum of numbers of 64 bits fits.
+        let wide = || alexander.iter().map(|c| i128::from(*c));
+        let at_minus_one: i128 = wide()
             .enumerate()
-            .map(|(k, c)| if k % 2 == 0 { *c } else { -*c })
+            .map(|(k, c)| if k % 2 == 0 { c } else { -c })
             .sum();
         if alexander.iter().ne(alexander.iter().rev())
             || alexander.first().is_none_or(|c| *c <= 0)
-            || alexander.iter().sum::<i64>().abs() != 1
+            || wide().sum::<i128>().abs() != 1
         {
             return Err(fault(format!(
                 "`invariants.alexander` = {alexander:?} is not a knot's: give all coefficients, symmetric, the first positive, with sum 1 or -1"
             )));
         }
-        if at_minus_one.unsigned_abs() != determinant {
+        if at_minus_one.unsigned_abs() != u128::from(determinant) {
             return Err(fault(format!(
                 "`invariants.determinant` = {determinant} is not |Delta(-1)| = {} of `alexander`",
                 at_minus_one.abs()
+            )));
+        }
+        if signature.unsigned_abs() > LARGEST_NUMBER {
+            return Err(fault(format!(
+                "`invariants.signature` = {signature} is beyond {LARGEST_NUMBER}"
             )));
         }
         if signature % 2 != 0 {
@@ -149,6 +164,16 @@ impl KnotEntry {
         if file.chirality == Chirality::Amphichiral && signature != 0 {
             return Err(fault(format!(
                 "`invariants.signature` = {signature} contradicts `chirality` = \"amphichiral\"; it must be 0"
+            )));
+        }
+        if let Some(jones) = &jones
+            && (jones.lowest.unsigned_abs() > LARGEST_NUMBER
+                || !(1..=LARGEST_NUMBER as usize).contains(&jones.coefficients.len()))
+        {
+            return Err(fault(format!(
+                "`invariants.jones` has {} coefficients from power {} on: 1 to {LARGEST_NUMBER}, and powers up to it, are possible",
+                jones.coefficients.len(),
+                jones.lowest
             )));
         }
         if let Some(jones) = &jones
@@ -302,24 +327,21 @@ impl KnotEntry {
         self.name.contains('#')
     }
 
-    /// The entry of the mirror image: negated word and signature, a leading `m` added to or removed from each factor's name.
+    /// The entry of the mirror image: negated word and signature, a leading `m` added to or removed from each alias and factor's name.
     pub fn mirror(&self) -> Self {
-        let name = self
-            .name
-            .split('#')
-            .map(|factor| match factor.strip_prefix('m') {
-                Some(rest) => rest.to_owned(),
-                None => format!("m{factor}"),
-            })
-            .collect::<Vec<_>>()
-            .join("#");
+        let mirrored = |factor: &str| match factor.strip_prefix('m') {
+            Some(rest) => rest.to_owned(),
+            None => format!("m{factor}"),
+        };
+        let name = self.name.split('#').map(mirrored);
+        let name = name.collect::<Vec<_>>().join("#");
         Self {
             name,
             braid: negated(&self.braid),
             other_braids: self.other_braids.iter().map(|word| negated(word)).collect(),
             invariants: self.invariants.mirror(),
             jones: self.jones.as_ref().map(Jones::mirror),
-            aliases: self.aliases.iter().map(|name| format!("m{name}")).collect(),
+            aliases: self.aliases.iter().map(|name| mirrored(name)).collect(),
             start: self.start.as_ref().map(StartCurve::mirror),
             ..self.clone()
         }

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use topo_core::{CpuClock, InvalidValue, finite, positive};
 
 use super::NematicBattery;
-use super::hooks::{Phase, Progress, RunHooks};
+use super::hooks::{MOST_COUNTED, Phase, Progress, RunHooks};
 use super::record::ChargeReport;
 use crate::kernel::run::Kernel;
 use crate::memory::ByteAccount;
@@ -84,6 +84,37 @@ struct Unfinished {
     is_converged: bool,
     n_bytes: u64,
     cpu_seconds: f64,
+}
+
+impl Unfinished {
+    /// What does not fit a charge with so many seeds, on arrays of this length.
+    fn flaw(
+        &self,
+        battery: &NematicBattery,
+        n_seeds: usize,
+        length: usize,
+    ) -> Option<&'static str> {
+        let whole = |x: &[f64]| x.len() == length && x.iter().all(|x| x.is_finite());
+        let kept = |(energy, state, seed, rms): &(f64, NematicState, f64, f64)| {
+            let numbers = [energy, seed, rms].iter().all(|x| x.is_finite());
+            numbers
+                && *state.grid() == battery.grid
+                && state.particle().copied() == battery.particle
+        };
+        if self.seed > n_seeds || (self.seed == n_seeds && self.best.is_none()) {
+            Some("it has gone through other start fields")
+        } else if !self.best.iter().all(kept) {
+            Some("the best state is one of another battery")
+        } else if self.seed < n_seeds
+            && !(whole(&self.q) && whole(&self.velocity) && self.clock.is_sound())
+        {
+            Some("the relaxation is one of another battery")
+        } else if self.n_steps >= MOST_COUNTED || !self.cpu_seconds.is_finite() {
+            Some("a counter is out of range")
+        } else {
+            None
+        }
+    }
 }
 
 impl NematicBattery {
@@ -166,7 +197,9 @@ impl NematicBattery {
         let kernel = self.kernel::<f64>(&self.charged_surface(), self.accuracy.threads);
         let order_scale = self.parameters.material.order();
         let case = format!("{:?} {settings:?}", self.parameters);
-        let mut unfinished: Option<Unfinished> = hooks.resume(SCHEMA, &case)?;
+        let mut unfinished = hooks.resume(SCHEMA, &case, |u: &Unfinished| {
+            u.flaw(self, settings.seeds.len(), kernel.array_length())
+        })?;
         let (mut first, mut best, mut n_steps, mut earlier) = (0, None, 0, 0.0);
         let (mut stop, mut n_bytes) = ("converged", 0);
         if let Some(u) = &mut unfinished {
@@ -201,7 +234,8 @@ impl NematicBattery {
                 if !rms.is_finite() {
                     return Err(NematicError::Diverged { step });
                 }
-                if step.is_multiple_of(CHECK_EVERY) {
+                // Without any force no step is taken and none will be.
+                if step.is_multiple_of(CHECK_EVERY) || rms == 0.0 {
                     let order = kernel.tilt(&relaxation.q, order_scale);
                     let settled = last_order
                         .is_some_and(|last: f64| (order - last).abs() < settings.order_tolerance);
@@ -283,6 +317,7 @@ impl NematicBattery {
             bytes: ByteAccount {
                 fields: n_bytes,
                 geometry: kernel.n_bytes(),
+                second: kernel.n_second_bytes(),
                 flow: 0,
             },
         };

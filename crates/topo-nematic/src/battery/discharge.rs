@@ -7,7 +7,7 @@ use topo_core::{
 };
 
 use super::coupled_flow::{CoupledFlow, CoupledMemory, extra};
-use super::hooks::{Phase, Progress, RunHooks};
+use super::hooks::{MOST_COUNTED, Phase, Progress, RunHooks};
 use super::ramp::{RAMP_STEPS, Ramp};
 use super::record::{CHANNELS, NematicSample, PhaseReport, RunRecord};
 use super::switch::{SwitchTarget, SwitchedNematic, blend, extend_into_cut_cells};
@@ -97,6 +97,49 @@ struct Progressing {
     ramped: f64,
 }
 
+impl Progressing {
+    /// What does not fit a discharge that begins like `fresh` and is followed until `until`.
+    fn flaw(&self, fresh: &Self, until: f64) -> Option<&'static str> {
+        let n = &self.counters;
+        let counts = [
+            self.n_steps,
+            self.n_trials,
+            n.n_rate_evaluations,
+            n.n_factorisations,
+            n.n_solves,
+        ];
+        let mut last = -1.0;
+        let in_order = self.samples.iter().all(|s| {
+            let grows = s.time > last && s.time <= self.time;
+            last = s.time;
+            grows && s.energy.total().is_finite() && s.dissipated.iter().all(|x| x.is_finite())
+        });
+        let curve = &self.curve;
+        if !(0.0..=until).contains(&self.time) || !(0.0..=1.0).contains(&self.ramped) {
+            Some("its time is none of this run")
+        } else if !fresh.control.leads_to(&self.control) {
+            Some("the step control is one of another run")
+        } else if self.ledger.terms() != fresh.ledger.terms()
+            || self.ledger.channels() != fresh.ledger.channels()
+        {
+            Some("the energy account is one of another model")
+        } else if curve.parts() != fresh.curve.parts()
+            || curve.channels() != fresh.curve.channels()
+            || curve.time().last().is_some_and(|t| *t > self.time)
+            || !in_order
+        {
+            Some("the samples are those of another run")
+        } else if counts.iter().any(|n| *n >= MOST_COUNTED)
+            || self.rejections.iter().any(|(_, n)| n >= MOST_COUNTED)
+            || !self.cpu_seconds.is_finite()
+        {
+            Some("a counter is out of range")
+        } else {
+            None
+        }
+    }
+}
+
 impl SwitchedNematic {
     /// Lets the nematic go.
     ///
@@ -152,38 +195,47 @@ impl SwitchedNematic {
             .ramp
             .map(|duration| Ramp::new(self, duration, accuracy.threads, gapless));
         let mut state = self.state.clone();
-        let resumed: Option<(Progressing, Vec<f64>, Option<CoupledMemory>)> =
-            hooks.resume(SCHEMA, &case)?;
-        let mut remembered = None;
         let h = battery.grid().spacing();
         let power_unit = material.rotational_mobility * h * h * h;
+        let fresh = {
+            let mut ledger = Ledger::new(&EnergyParts::NAMES, &CHANNELS);
+            ledger.set_stored(&self.charged.energy().as_array());
+            let first_step =
+                FIRST_STEP * h * h / (material.rotational_mobility * material.elastic_constant);
+            Progressing {
+                time: 0.0,
+                control: StepControl::new(accuracy.tolerance, first_step)?
+                    .with_limits(1e-9 * first_step, settings.longest * unit)?,
+                n_steps: 0,
+                n_trials: 0,
+                ledger,
+                rejections: RejectionCounts::default(),
+                counters: topo_core::Counters::default(),
+                curve: DischargeCurve::new(EnergyParts::NAMES, CHANNELS),
+                samples: Vec::new(),
+                cpu_seconds: 0.0,
+                ramped: 0.0,
+            }
+        };
+        type Memory = Option<CoupledMemory>;
+        let resumed = hooks.resume(
+            SCHEMA,
+            &case,
+            |(run, q, _): &(Progressing, Vec<f64>, Memory)| {
+                if q.len() != state.q_tensor().len() || q.iter().any(|x| !x.is_finite()) {
+                    return Some("the field is one of another grid");
+                }
+                run.flaw(&fresh, settings.longest * unit)
+            },
+        )?;
+        let mut remembered = None;
         let mut run = match resumed {
             Some((run, q, memory)) => {
                 state.q_mut().copy_from_slice(&q);
                 remembered = memory;
                 run
             }
-            None => {
-                let mut ledger = Ledger::new(&EnergyParts::NAMES, &CHANNELS);
-                let before = self.charged.energy();
-                ledger.set_stored(&before.as_array());
-                let first_step =
-                    FIRST_STEP * h * h / (material.rotational_mobility * material.elastic_constant);
-                Progressing {
-                    time: 0.0,
-                    control: StepControl::new(accuracy.tolerance, first_step)?
-                        .with_limits(1e-9 * first_step, settings.longest * unit)?,
-                    n_steps: 0,
-                    n_trials: 0,
-                    ledger,
-                    rejections: RejectionCounts::default(),
-                    counters: topo_core::Counters::default(),
-                    curve: DischargeCurve::new(EnergyParts::NAMES, CHANNELS),
-                    samples: Vec::new(),
-                    cpu_seconds: 0.0,
-                    ramped: 0.0,
-                }
-            }
+            None => fresh,
         };
         // The final kernel waits until the ramp is over.
         let mut waiting = None;
@@ -399,9 +451,11 @@ impl SwitchedNematic {
             bytes: ByteAccount {
                 fields: field.n_bytes(),
                 geometry: kernel.n_bytes(),
+                second: kernel.n_second_bytes(),
                 flow: flow.as_ref().map_or(0, |f| f.coupling.n_bytes() as u64),
             },
             cpu_seconds: earlier + clock.seconds(),
+            n_second_passes: kernel.n_second_passes(),
             flow: flow.as_ref().map(CoupledFlow::report),
         };
         Ok(Discharge {

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
-use topo_core::{Interrupt, load_checkpoint, save_checkpoint};
+use topo_core::{FileError, Interrupt, load_checkpoint, save_checkpoint};
 
 use super::record::NematicSample;
 use crate::{FlowCoupling, NematicError, NematicState};
@@ -33,6 +33,9 @@ pub struct Progress {
     /// Root mean square of the molecular field.
     pub rms_field: f64,
 }
+
+/// More steps than any run takes: counters beyond it come from a broken file.
+pub(super) const MOST_COUNTED: u64 = 1 << 53;
 
 type ProgressFn<'a> = dyn FnMut(&Progress) + 'a;
 type SampleFn<'a> = dyn FnMut(&NematicSample, &NematicState, Option<&FlowCoupling>) + 'a;
@@ -110,22 +113,29 @@ impl<'a> RunHooks<'a> {
         }
     }
 
-    /// The checkpoint of the case, if there is one.
+    /// The checkpoint of the case, if there is one; `flaw` names what does not fit the case.
     pub(crate) fn resume<T: DeserializeOwned>(
         &self,
         schema: &str,
         case: &str,
+        flaw: impl Fn(&T) -> Option<&'static str>,
     ) -> Result<Option<T>, NematicError> {
         let Some(path) = self.checkpoint.as_ref().filter(|p| p.exists()) else {
             return Ok(None);
         };
         let (found, value): (String, T) = load_checkpoint(path, schema)?;
-        if found == case {
-            Ok(Some(value))
-        } else {
-            Err(NematicError::ForeignCheckpoint {
+        if found != case {
+            return Err(NematicError::ForeignCheckpoint {
                 path: path.display().to_string(),
-            })
+            });
+        }
+        match flaw(&value) {
+            None => Ok(Some(value)),
+            Some(what) => Err(FileError::Corrupt {
+                path: path.clone(),
+                what: what.to_owned(),
+            }
+            .into()),
         }
     }
 

@@ -86,6 +86,8 @@ pub struct PhaseReport {
     pub ledger: Ledger,
     /// Bytes by component.
     pub bytes: ByteAccount,
+    /// Passes over the field for the second elastic constant, since the run began or went on.
+    pub n_second_passes: u64,
     /// Processor seconds of the calling thread.
     pub cpu_seconds: f64,
     /// The flow; none if none was modelled.

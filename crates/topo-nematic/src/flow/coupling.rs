@@ -284,7 +284,14 @@ impl FlowCoupling {
 
     /// Goes on from a memory; whether it fits this grid and particle.
     pub(crate) fn restore(&mut self, memory: FlowMemory) -> bool {
+        let counts = [memory.n_updates, memory.n_steps, memory.n_iterations];
+        let numbers = [memory.power, memory.dissipation, memory.residual];
         let fits = memory.velocity.cells() == self.velocity.cells()
+            && counts
+                .iter()
+                .chain(&memory.n_solves)
+                .all(|n| *n < u64::MAX / 2)
+            && numbers.iter().all(|x| x.is_finite())
             && match (&mut self.no_slip, memory.no_slip) {
                 (Some(own), Some(kept)) => own.restore(kept),
                 (None, None) => true,

@@ -82,9 +82,9 @@ impl<T: Real> Kernel<T> {
         self
     }
 
-    /// Bytes of lists and values.
+    /// Bytes of lists and values, those of the second elastic constant left out.
     pub(crate) fn n_bytes(&self) -> u64 {
-        self.domain.n_bytes() + self.second.as_ref().map_or(0, SecondElastic::n_bytes)
+        self.domain.n_bytes()
     }
 
     /// Length of the arrays that passes read and write.

@@ -1,5 +1,8 @@
 //! The second elastic constant: a pass of its own, only when it is asked for.
 
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
 use crate::domain::{Domain, neighbour};
 use crate::kernel::run::{Kernel, Sums};
 use crate::real::Real;
@@ -20,6 +23,8 @@ pub(crate) struct SecondElastic {
     inner: Vec<(u32, [u32; 6])>,
     /// 1/mass of each cell, 0 where there is no field.
     inverse_mass: Vec<f64>,
+    /// Passes over the cells so far, copies of the kernel included.
+    n_passes: Arc<AtomicU64>,
 }
 
 impl SecondElastic {
@@ -52,7 +57,12 @@ impl SecondElastic {
                 .iter()
                 .map(|m| if *m > 0.0 { 1.0 / m } else { 0.0 })
                 .collect(),
+            n_passes: Arc::default(),
         }
+    }
+
+    fn count(&self) {
+        self.n_passes.fetch_add(1, Ordering::Relaxed);
     }
 
     pub(crate) fn n_bytes(&self) -> u64 {
@@ -61,11 +71,23 @@ impl SecondElastic {
 }
 
 impl<T: Real> Kernel<T> {
+    /// Bytes of the lists of the second elastic constant.
+    pub(crate) fn n_second_bytes(&self) -> u64 {
+        self.second.as_ref().map_or(0, SecondElastic::n_bytes)
+    }
+
+    /// Passes that the second elastic constant took so far.
+    pub(crate) fn n_second_passes(&self) -> u64 {
+        let second = self.second.as_ref();
+        second.map_or(0, |s| s.n_passes.load(Ordering::Relaxed))
+    }
+
     /// Energy of the second elastic constant.
     pub(crate) fn second_energy(&self, q: &[T]) -> f64 {
         let Some(second) = &self.second else {
             return 0.0;
         };
+        second.count();
         let sum: f64 = second
             .inner
             .iter()
@@ -80,6 +102,7 @@ impl<T: Real> Kernel<T> {
     /// Adds `factor` times its molecular field to `out`.
     pub(crate) fn add_second(&self, q: &[T], factor: f64, out: &mut [T]) {
         let Some(second) = &self.second else { return };
+        second.count();
         let scale = factor * second.constant / (2.0 * self.domain.grid.spacing());
         for (_, around) in &second.inner {
             let v = self.divergence(q, around);

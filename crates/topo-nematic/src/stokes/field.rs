@@ -18,9 +18,34 @@ use crate::stokes::reduce::{larger, max_over, sum_over};
 /// # References
 /// `harlow1965`
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Unchecked")]
 pub struct MacField {
     cells: [usize; 3],
     components: [Vec<f64>; 3],
+}
+
+#[derive(Deserialize)]
+struct Unchecked {
+    cells: [usize; 3],
+    components: [Vec<f64>; 3],
+}
+
+impl TryFrom<Unchecked> for MacField {
+    type Error = &'static str;
+    fn try_from(raw: Unchecked) -> Result<Self, &'static str> {
+        let mut cells = raw.cells.iter();
+        let n = cells.try_fold(1usize, |n, k| n.checked_mul(*k));
+        if raw.components.iter().any(|c| Some(c.len()) != n) {
+            return Err("the components do not fit the cells");
+        }
+        if raw.components.iter().flatten().any(|x| !x.is_finite()) {
+            return Err("a component is not finite");
+        }
+        Ok(Self {
+            cells: raw.cells,
+            components: raw.components,
+        })
+    }
 }
 
 impl MacField {

@@ -209,7 +209,10 @@ impl NoSlip {
 
     /// Goes on from a memory; whether it is of the same boundary.
     pub(crate) fn restore(&mut self, memory: NoSlipMemory) -> bool {
-        let fits = memory.forces.len() == self.forces.len() && self.history.restore(memory.history);
+        let fits = memory.forces.len() == self.forces.len()
+            && memory.forces.iter().all(|x| x.is_finite())
+            && memory.n_iterations < u64::MAX / 2
+            && self.history.restore(memory.history);
         if fits {
             self.forces = memory.forces;
             self.n_iterations = memory.n_iterations;

@@ -26,8 +26,18 @@ pub struct WorkAccount {
     pub n_newton_factorisations: u64,
     /// Symbolic analyses of the Newton matrix.
     pub n_newton_patterns: u64,
-    /// Bytes held by the contact list.
+    /// Evaluations of the contact energy and its force.
+    pub n_contact_evaluations: u64,
+    /// Evaluations of the twist energy and its torques.
+    pub n_twist_evaluations: u64,
+    /// Evaluations of the couplings by friction.
+    pub n_friction_evaluations: u64,
+    /// Bytes held by the list of near pairs, which contact and friction share.
     pub contact_bytes: usize,
+    /// Bytes held by matrices and factors of the twist.
+    pub twist_bytes: usize,
+    /// Bytes held by the couplings by friction.
+    pub friction_bytes: usize,
     /// Bytes held by matrices and factors of the centreline.
     pub matrix_bytes: usize,
 }
@@ -87,8 +97,21 @@ impl RodModel {
             .newton_twist
             .as_ref()
             .map_or(0, NewtonTwist::n_factorisations);
+        // Each evaluation calls every term that the model has, once.
+        let calls = |name: &str| match self.terms.iter().find(|term| term.name() == name) {
+            Some(_) => self.n_term_evaluations,
+            None => 0,
+        };
+        let couplings = self.at.couplings.capacity() + self.accepted.couplings.capacity();
+        let twist_matrices = self.rotation.as_ref().map_or(0, TwistViscosity::n_bytes)
+            + self.newton_twist.as_ref().map_or(0, NewtonTwist::n_bytes);
         WorkAccount {
             n_evaluations: self.n_evaluations,
+            n_contact_evaluations: calls("contact"),
+            n_twist_evaluations: calls("twist"),
+            n_friction_evaluations: self.n_friction_evaluations,
+            twist_bytes: twist_matrices,
+            friction_bytes: couplings * size_of::<(u32, u32, f64)>(),
             n_list_rebuilds: self.pairs.n_rebuilds(),
             n_mobility_factorisations: self.centreline.n_factorisations(),
             n_twist_factorisations: mobility + newton,

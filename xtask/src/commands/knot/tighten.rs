@@ -9,8 +9,8 @@ use serde_json::json;
 use std::path::Path;
 use topo_core::write_atomic_bytes;
 use topo_knots::{
-    KnotEntry, KnotError, KnotTable, TightKnot, TightenSettings, ideal, read_curve, second_opinion,
-    write_curve,
+    KnotEntry, KnotError, KnotTable, TightKnot, TightenSettings, ideal, parse_braid, read_curve,
+    second_opinion, write_curve,
 };
 
 pub(super) fn run(args: &TightenArgs, knots: &KnotTable) -> Result<(), XtaskError> {
@@ -67,16 +67,11 @@ fn entries(args: &TightenArgs, table: &KnotTable) -> Result<Vec<KnotEntry>, Xtas
 }
 
 fn letters(word: &str) -> Result<Vec<i32>, XtaskError> {
-    word.split(|c: char| c.is_whitespace() || ",[]".contains(c))
-        .filter(|letter| !letter.is_empty())
-        .map(|letter| {
-            letter.parse().map_err(|_| XtaskError::Argument {
-                key: "--braid",
-                value: word.to_owned(),
-                remedy: format!("`{letter}` is no generator; give integers such as \"1 -2 1 -2\""),
-            })
-        })
-        .collect()
+    parse_braid(word).map_err(|e| XtaskError::Argument {
+        key: "--braid",
+        value: word.to_owned(),
+        remedy: e.to_string(),
+    })
 }
 
 fn settings(args: &TightenArgs) -> TightenSettings {

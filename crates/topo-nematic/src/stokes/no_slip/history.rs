@@ -58,7 +58,8 @@ impl History {
             .solutions
             .iter()
             .chain(&kept.images)
-            .all(|x| x.len() == n);
+            .all(|x| x.len() == n && x.iter().all(|x| x.is_finite()));
+        let fits = fits && kept.n_pushed < usize::MAX / 2;
         if fits {
             (self.solutions, self.images) = (kept.solutions, kept.images);
             self.n_pushed = kept.n_pushed;

@@ -1,0 +1,4 @@
+//! Braid words.
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|data: &[u8]| topo_tests::parsers::braid(data));

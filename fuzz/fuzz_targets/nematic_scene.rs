@@ -1,0 +1,4 @@
+//! TOML scenes of colloids.
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|data: &[u8]| topo_tests::parsers::nematic_scene(data));

@@ -1,0 +1,4 @@
+//! Tables of results.
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|data: &[u8]| topo_tests::parsers::table(data));

@@ -1,0 +1,4 @@
+//! Curves as VECT.
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|data: &[u8]| topo_tests::parsers::vect(data));

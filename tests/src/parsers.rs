@@ -1,0 +1,426 @@
+//! What must hold of every parser for any bytes: it refuses or it reads, and what it read comes back when written and read again.
+//!
+//! The fuzz targets of the folder `fuzz` call these functions, and the test `fuzzing` replays its seeds and findings through them.
+
+use std::fmt::Debug;
+use std::path::Path;
+use std::sync::OnceLock;
+
+use nalgebra::Vector3;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use topo_analysis::{
+    ElasticScene, FieldSnapshot, KnotRow, NematicRow, NematicScene, Scene, SweepRow, parse_table,
+    table_bytes,
+};
+use topo_core::{
+    Counters, DischargeCurve, Interrupt, Ledger, Polyline, RejectionCounts, Snapshot, StepControl,
+    checkpoint_bytes, parse_checkpoint,
+};
+use topo_knots::{
+    CurveFormat, Invariants, KnotEntry, KnotError, TightKnot, closed_braid, curve_text,
+    n_components, parse_braid, parse_components,
+};
+use topo_nematic::{
+    ChargeSettings, DischargeSettings, FlowParameters, NematicAccuracy, NematicBattery,
+    NematicError, NematicParameters, RunHooks, SwitchSettings, SwitchTarget, SwitchedNematic,
+};
+
+/// What is called with the bytes of a file.
+pub type Parser = fn(&[u8]);
+
+/// All parsers with the names of their fuzz targets.
+pub const PARSERS: [(&str, Parser); 10] = [
+    ("elastic_scene", elastic_scene),
+    ("nematic_scene", nematic_scene),
+    ("knot_file", knot_file),
+    ("braid", braid),
+    ("csv", csv),
+    ("xyz", xyz),
+    ("vect", vect),
+    ("table", table),
+    ("checkpoint", checkpoint),
+    ("nematic_checkpoint", nematic_checkpoint),
+];
+
+/// Longest braid word whose invariants are computed: beyond it a single input takes seconds.
+const LONGEST_WORD: usize = 10;
+
+fn named() -> &'static Path {
+    Path::new("input")
+}
+
+/// Numbers compare by their text, since a NaN differs from itself.
+fn same(first: &impl Debug, second: &impl Debug) {
+    assert_eq!(format!("{first:?}"), format!("{second:?}"));
+}
+
+/// TOML scenes of rods.
+pub fn elastic_scene(data: &[u8]) {
+    let Ok(text) = std::str::from_utf8(data) else {
+        return;
+    };
+    // The table decides which battery it is; either way nothing may panic.
+    drop(Scene::parse(text, named()));
+    if let Ok(scene) = ElasticScene::parse(text, named()) {
+        let written = scene.text();
+        let again = ElasticScene::parse(&written, named());
+        same(&again.expect("what was written is a scene"), &scene);
+    }
+}
+
+/// TOML scenes of colloids.
+pub fn nematic_scene(data: &[u8]) {
+    let Ok(text) = std::str::from_utf8(data) else {
+        return;
+    };
+    drop(Scene::parse(text, named()));
+    if let Ok(scene) = NematicScene::parse(text, named()) {
+        let written = scene.text();
+        let again = NematicScene::parse(&written, named());
+        same(&again.expect("what was written is a scene"), &scene);
+        assert!(!scene.cases().is_empty(), "a scene without a case");
+    }
+}
+
+/// TOML files of knots; the part after a line `---` is the file that it may name.
+pub fn knot_file(data: &[u8]) {
+    let Ok(text) = std::str::from_utf8(data) else {
+        return;
+    };
+    let (text, other) = text.split_once("\n---\n").unwrap_or((text, ""));
+    let load = |_: &Path| Ok::<_, KnotError>(other.to_owned());
+    if let Ok(entry) = KnotEntry::parse(Path::new("x.toml"), text, &load) {
+        // A leading `m` marks mirror images: such an alias is one, and loses it.
+        if !entry.aliases.iter().any(|alias| alias.starts_with('m')) {
+            same(&entry.mirror().mirror(), &entry);
+        }
+    }
+}
+
+/// Braid words as text.
+pub fn braid(data: &[u8]) {
+    let Ok(text) = std::str::from_utf8(data) else {
+        return;
+    };
+    let Ok(word) = parse_braid(text) else { return };
+    let spelled: Vec<String> = word.iter().map(i32::to_string).collect();
+    assert_eq!(parse_braid(&spelled.join(" ")).expect("a word"), word);
+    let Ok(n) = n_components(&word) else {
+        assert!(closed_braid(&word).is_err(), "a knot without components");
+        return;
+    };
+    if word.len() > LONGEST_WORD {
+        return;
+    }
+    let Ok(curve) = closed_braid(&word) else {
+        return;
+    };
+    assert_eq!(n, 1, "a link passed for a knot");
+    let invariants = |word: &[i32]| {
+        let curve = closed_braid(word).expect("a knot");
+        Invariants::of(curve.vertices()).expect("in general position")
+    };
+    let own = Invariants::of(curve.vertices()).expect("in general position");
+    // The mirror image, and the word begun at its second letter.
+    let mirrored: Vec<i32> = word.iter().map(|g| -g).collect();
+    assert_eq!(invariants(&mirrored), own.mirror());
+    let turned = [&word[1..], &word[..1]].concat();
+    assert_eq!(invariants(&turned), own);
+}
+
+/// Curves and snapshots as comma-separated values.
+pub fn csv(data: &[u8]) {
+    curve(data, CurveFormat::Csv);
+    let Ok(text) = std::str::from_utf8(data) else {
+        return;
+    };
+    if let Ok(snapshot) = Snapshot::parse(named(), text) {
+        // A header may repeat or leave out names; such a table is read but cannot be written.
+        if let Ok(written) = snapshot.text(named()) {
+            same(
+                &Snapshot::parse(named(), &written).expect("a table"),
+                &snapshot,
+            );
+        }
+    }
+}
+
+/// Curves as XYZ.
+pub fn xyz(data: &[u8]) {
+    curve(data, CurveFormat::Xyz);
+}
+
+/// Curves as VECT.
+pub fn vect(data: &[u8]) {
+    curve(data, CurveFormat::Vect);
+}
+
+fn curve(data: &[u8], format: CurveFormat) {
+    let Ok(text) = std::str::from_utf8(data) else {
+        return;
+    };
+    for component in parse_components(named(), text, format).unwrap_or_default() {
+        let closed = component.closed.unwrap_or(false);
+        let Ok(curve) = Polyline::new(component.vertices, closed) else {
+            continue;
+        };
+        let written = curve_text(&curve, format);
+        let again = parse_components(named(), &written, format).expect("what was written");
+        assert_eq!(again.len(), 1);
+        same(&again[0].vertices, &curve.vertices());
+        if format == CurveFormat::Vect {
+            assert_eq!(again[0].closed, Some(closed));
+        }
+    }
+}
+
+/// Tables of results.
+pub fn table(data: &[u8]) {
+    rows::<SweepRow>(data);
+    rows::<NematicRow>(data);
+    rows::<KnotRow>(data);
+}
+
+fn rows<T: Debug + Serialize + DeserializeOwned>(data: &[u8]) {
+    let Ok(rows) = parse_table::<T>(named(), data) else {
+        return;
+    };
+    if !rows.is_empty() {
+        let bytes = table_bytes(named(), &rows).expect("written");
+        same(&parse_table::<T>(named(), &bytes).expect("a table"), &rows);
+    }
+}
+
+/// Checkpoints: the bytes as a file, and as what a sound file holds.
+pub fn checkpoint(data: &[u8]) {
+    typed::<(Polyline, DischargeCurve, Ledger)>(data, "core/1");
+    typed::<(StepControl, Counters, RejectionCounts)>(data, "control/1");
+    typed::<TightKnot>(data, "tight-knot/1");
+    if let Ok(file) = checkpoint_bytes(named(), "nematic-field/1", &Raw(data)) {
+        drop(FieldSnapshot::parse(named(), &file));
+    }
+}
+
+/// Reads bytes as a checkpoint of a type, directly and below a sound head and digest.
+fn typed<T: Debug + Serialize + DeserializeOwned>(data: &[u8], schema: &str) {
+    if parse_checkpoint::<T>(named(), data, schema).is_ok() {
+        let mut flipped = data.to_vec();
+        let middle = flipped.len() / 2;
+        flipped[middle] ^= 1;
+        assert!(parse_checkpoint::<T>(named(), &flipped, schema).is_err());
+    }
+    let file = checkpoint_bytes(named(), schema, &Raw(data)).expect("encoded");
+    if let Ok(value) = parse_checkpoint::<T>(named(), &file, schema) {
+        let again = checkpoint_bytes(named(), schema, &value).expect("encoded");
+        let back: T = parse_checkpoint(named(), &again, schema).expect("a checkpoint");
+        same(&back, &value);
+    }
+}
+
+/// Bytes that stand for a value already encoded.
+struct Raw<'a>(&'a [u8]);
+
+impl Serialize for Raw<'_> {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        use serde::ser::SerializeTuple;
+        let mut tuple = serializer.serialize_tuple(self.0.len())?;
+        for byte in self.0 {
+            tuple.serialize_element(byte)?;
+        }
+        tuple.end()
+    }
+}
+
+/// Checkpoints of nematics: the bytes after the first as what a sound file of the case holds, which then goes on.
+///
+/// The first byte chooses charge (even) or discharge (odd, from 128 on with flow).
+pub fn nematic_checkpoint(data: &[u8]) {
+    let Some((kind, payload)) = data.split_first() else {
+        return;
+    };
+    let run = match (kind % 2, *kind >= 128) {
+        (0, _) => small_run(0),
+        (_, false) => small_run(1),
+        (_, true) => small_run(2),
+    };
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("checkpoint");
+    let file = checkpoint_bytes(&path, run.schema, &(&run.case, Raw(payload))).expect("encoded");
+    std::fs::write(&path, file).expect("written");
+    match run.go_on(&path) {
+        Ok(())
+        | Err(NematicError::File(_) | NematicError::Diverged { .. } | NematicError::Flow(_)) => {}
+        Err(other) => panic!("{other}"),
+    }
+}
+
+/// A battery of few cells, its checkpoint's schema and case.
+struct SmallRun {
+    schema: &'static str,
+    case: String,
+    battery: NematicBattery,
+    charge: ChargeSettings,
+    discharge: Option<(SwitchedNematic, DischargeSettings)>,
+    /// Contents of a checkpoint after the case.
+    payload: Vec<u8>,
+}
+
+impl SmallRun {
+    /// Goes on from the checkpoint in a file, for a few steps.
+    fn go_on(&self, path: &Path) -> Result<(), NematicError> {
+        let interrupt = Interrupt::default();
+        let mut hooks = RunHooks::new(&interrupt).with_checkpoint(path, 1e9);
+        match &self.discharge {
+            None => drop(self.battery.charge(&self.charge, &mut hooks)?),
+            Some((released, settings)) => drop(released.discharge(settings, &mut hooks)?),
+        }
+        Ok(())
+    }
+}
+
+/// Inputs of [`checkpoint`] that are sound, with names.
+pub fn checkpoint_payloads() -> Vec<(&'static str, Vec<u8>)> {
+    let payload = |value: Vec<u8>, schema: &str| {
+        let head = HEAD + schema.len() + 8;
+        value[head..value.len() - DIGEST].to_vec()
+    };
+    let corner = |x, y, z| Vector3::new(x, y, z);
+    let curve = Polyline::new(
+        vec![
+            corner(0.0, 0.0, 0.0),
+            corner(1.0, 0.0, 0.0),
+            corner(0.0, 2.0, 1e-3),
+        ],
+        true,
+    );
+    let curve = curve.expect("a triangle");
+    let mut released = DischargeCurve::new(["bend", "twist"], ["viscous"]);
+    released.push(0.0, &[1.0, 0.5], &[0.0]).expect("a sample");
+    released.push(0.5, &[0.5, 0.25], &[0.75]).expect("a sample");
+    let mut ledger = Ledger::new(&["bend", "twist"], &["viscous"]);
+    ledger.set_stored(&[1.0, 0.5]);
+    ledger.dissipate(0, 0.25);
+    ledger.record_event("cut", 0.1, 0.125);
+    let mut control = StepControl::new(1e-3, 0.1).expect("a control");
+    control.accept(0.1, 5e-4, 3);
+    let (counters, rejected) = (Counters::default(), RejectionCounts::default());
+    let core = checkpoint_bytes(named(), "core/1", &(curve, released, ledger));
+    let steps = checkpoint_bytes(named(), "control/1", &(control, counters, rejected));
+    let (core, steps) = (core.expect("encoded"), steps.expect("encoded"));
+    vec![
+        ("core", payload(core.clone(), "core/1")),
+        ("control", payload(steps, "control/1")),
+        ("file", core),
+    ]
+}
+
+/// Bytes of a checkpoint before the name of its schema: magic word, format, the name's length.
+const HEAD: usize = 8 + 4 + 2;
+/// Bytes of the digest at its end.
+const DIGEST: usize = 32;
+
+/// What a sound checkpoint of a nematic holds after its case, with the byte that chooses it: inputs of [`nematic_checkpoint`].
+pub fn nematic_payloads() -> Vec<(&'static str, Vec<u8>)> {
+    [("charge", 0u8), ("discharge", 1), ("flow", 129)]
+        .into_iter()
+        .enumerate()
+        .map(|(k, (name, byte))| (name, [&[byte], &small_run(k).payload[..]].concat()))
+        .collect()
+}
+
+fn small_run(which: usize) -> &'static SmallRun {
+    static RUNS: [OnceLock<SmallRun>; 3] = [const { OnceLock::new() }; 3];
+    RUNS[which].get_or_init(|| {
+        let parameters = NematicParameters {
+            radius: 3.0,
+            spacing: 1.5,
+            // A particle is held by the flow's forces; without flow it only makes the input longer.
+            particle: which == 2,
+            cells: Some(if which == 2 { [6, 6, 8] } else { [4, 4, 4] }),
+            ..NematicParameters::default()
+        };
+        let accuracy = NematicAccuracy {
+            max_steps: 4,
+            ..NematicAccuracy::default()
+        };
+        let battery = NematicBattery::new(&parameters, &accuracy).expect("a battery");
+        let charge = ChargeSettings {
+            max_steps: 3,
+            ..ChargeSettings::default()
+        };
+        let discharge = (which > 0).then(|| {
+            let mut none = RunHooks::new(&Interrupt::default());
+            let charged = battery.charge(&charge, &mut none).expect("a charge");
+            let to = if which == 2 {
+                SwitchTarget::default()
+            } else {
+                SwitchTarget::Keep
+            };
+            let released = charged.switch(&SwitchSettings { to, ramp: None });
+            let settings = DischargeSettings {
+                flow: (which == 2).then(FlowParameters::default),
+                ..DischargeSettings::default()
+            };
+            (released.expect("released"), settings)
+        });
+        let schema = if which == 0 {
+            "nematic-charge/2"
+        } else {
+            "nematic-discharge/3"
+        };
+        let mut run = SmallRun {
+            schema,
+            case: String::new(),
+            battery,
+            charge,
+            discharge,
+            payload: Vec::new(),
+        };
+        (run.case, run.payload) = run.sample();
+        run
+    })
+}
+
+impl SmallRun {
+    /// Case and payload of a checkpoint of this run.
+    fn sample(&self) -> (String, Vec<u8>) {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("checkpoint");
+        let interrupt = Interrupt::default();
+        interrupt.request();
+        let mut hooks = RunHooks::new(&interrupt).with_checkpoint(&path, 0.0);
+        match &self.discharge {
+            None => drop(
+                self.battery
+                    .charge(&self.charge, &mut hooks)
+                    .expect("a charge"),
+            ),
+            Some((released, settings)) => {
+                drop(
+                    released
+                        .discharge(settings, &mut hooks)
+                        .expect("a discharge"),
+                );
+            }
+        }
+        let bytes = std::fs::read(&path).expect("a checkpoint");
+        let head = HEAD + self.schema.len() + 8;
+        let payload = &bytes[head..bytes.len() - DIGEST];
+        let (n, at) = length(payload);
+        let case = String::from_utf8(payload[at..at + n].to_vec()).expect("a name");
+        (case, payload[at + n..].to_vec())
+    }
+}
+
+/// A length of seven bits a byte, and where what it counts begins.
+fn length(bytes: &[u8]) -> (usize, usize) {
+    let mut n = 0;
+    for (k, byte) in bytes.iter().enumerate() {
+        n |= usize::from(byte & 127) << (7 * k);
+        if byte & 128 == 0 {
+            return (n, k + 1);
+        }
+    }
+    (n, bytes.len())
+}

@@ -1,0 +1,170 @@
+//! `cargo xtask determinism`: the same numbers from one thread, from two, and from runs killed at random moments.
+
+use super::compare;
+use crate::cli::DeterminismArgs;
+use crate::error::XtaskError;
+use crate::interrupt;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+/// How often a killed run is looked at.
+const POLL: Duration = Duration::from_millis(20);
+
+pub fn run(args: &DeterminismArgs) -> Result<(), XtaskError> {
+    let stop = interrupt::install();
+    let folder = args.out.join("determinism");
+    if folder.exists() {
+        std::fs::remove_dir_all(&folder).map_err(at(&folder))?;
+    }
+    let place = |name: &str| folder.join(name);
+    let start = Instant::now();
+    finish(&args.work("1", &place("one-thread")))?;
+    interrupt::check(&stop)?;
+    let whole = start.elapsed();
+    eprintln!("one thread: {:.0} s", whole.as_secs_f64());
+    finish(&args.work("2", &place("two-threads")))?;
+    interrupt::check(&stop)?;
+    let mut moments = Moments(args.seed);
+    let n_kills = torn(args, &place("killed"), whole, &mut moments)?;
+    interrupt::check(&stop)?;
+    let mut n_differences = 0;
+    for other in ["two-threads", "killed"] {
+        let differences = compare::differences(&place("one-thread"), &place(other))?;
+        let n_files = compare::files(&place("one-thread"))?.len();
+        println!(
+            "one-thread and {other}: {n_files} files, {} differ",
+            differences.len()
+        );
+        for line in differences.iter().take(20) {
+            println!("  {line}");
+        }
+        n_differences += differences.len();
+    }
+    println!(
+        "killed {n_kills} times, {} s without kills",
+        whole.as_secs()
+    );
+    if n_differences == 0 {
+        Ok(())
+    } else {
+        Err(XtaskError::Step(format!("{n_differences} files differ")))
+    }
+}
+
+impl DeterminismArgs {
+    /// What is computed, by this very program: the scene, or all that the figures draw.
+    fn work(&self, jobs: &str, out: &Path) -> Vec<String> {
+        let out = out.display().to_string();
+        let quality = self.quality.to_string().to_lowercase();
+        let words: Vec<String> = match &self.scene {
+            Some(scene) => vec!["run".to_owned(), scene.display().to_string()],
+            // The whole as one part of one: nothing is drawn.
+            None => ["figures", "--quality", &quality, "--shard", "1/1"]
+                .map(str::to_owned)
+                .to_vec(),
+        };
+        let rest = ["--jobs", jobs, "--out", &out].map(str::to_owned);
+        words.into_iter().chain(rest).collect()
+    }
+}
+
+fn command(words: &[String]) -> Result<Command, XtaskError> {
+    let own = std::env::current_exe().map_err(|e| XtaskError::Step(e.to_string()))?;
+    let mut command = Command::new(own);
+    command
+        .args(words)
+        .stdout(Stdio::null())
+        .stderr(Stdio::null());
+    Ok(command)
+}
+
+/// Runs to the end.
+fn finish(words: &[String]) -> Result<(), XtaskError> {
+    let failed = |what: String| XtaskError::Step(format!("{}: {what}", words.join(" ")));
+    let status = command(words)?
+        .status()
+        .map_err(|e| failed(e.to_string()))?;
+    if status.success() {
+        Ok(())
+    } else {
+        Err(failed(status.to_string()))
+    }
+}
+
+/// Runs to the end on two threads, killed on the way as often as asked; gives how often it was.
+fn torn(
+    args: &DeterminismArgs,
+    out: &Path,
+    whole: Duration,
+    moments: &mut Moments,
+) -> Result<u32, XtaskError> {
+    let words = args.work("2", out);
+    let failed = |e: std::io::Error| XtaskError::Step(e.to_string());
+    // On average all kills take the time of one whole run, so that it is met at every stage.
+    let mean = whole.as_secs_f64() / f64::from(args.kills.max(1));
+    let mut n_kills = 0;
+    while n_kills < args.kills {
+        let mut child = command(&words)?.spawn().map_err(failed)?;
+        let end = Instant::now() + Duration::from_secs_f64(2.0 * mean * moments.next());
+        while Instant::now() < end && child.try_wait().map_err(failed)?.is_none() {
+            std::thread::sleep(POLL);
+        }
+        if child.try_wait().map_err(failed)?.is_some() {
+            break;
+        }
+        child.kill().map_err(failed)?;
+        child.wait().map_err(failed)?;
+        n_kills += 1;
+        eprintln!("killed {n_kills} of {}", args.kills);
+    }
+    finish(&words)?;
+    Ok(n_kills)
+}
+
+/// Numbers between 0 and 1 that look random and are the same every time.
+struct Moments(u64);
+
+impl Moments {
+    fn next(&mut self) -> f64 {
+        self.0 = self
+            .0
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1u64 << 53) as f64
+    }
+}
+
+fn at(path: &Path) -> impl Fn(std::io::Error) -> XtaskError {
+    let path: PathBuf = path.to_owned();
+    move |source| XtaskError::File {
+        path: path.clone(),
+        source,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_whole_is_computed_and_nothing_drawn() {
+        let mut args = DeterminismArgs {
+            scene: None,
+            quality: crate::figures::Quality::Draft,
+            kills: 3,
+            seed: 1,
+            out: PathBuf::from("results"),
+        };
+        let words = args.work("2", Path::new("x"));
+        let expected = "figures --quality draft --shard 1/1 --jobs 2 --out x";
+        assert_eq!(words.join(" "), expected);
+        args.scene = Some(PathBuf::from("a.toml"));
+        assert_eq!(
+            args.work("1", Path::new("y")).join(" "),
+            "run a.toml --jobs 1 --out y"
+        );
+        let mut moments = Moments(1);
+        assert!((0..100).all(|_| (0.0..1.0).contains(&moments.next())));
+    }
+}
