@@ -12,7 +12,7 @@ use std::process::{Command, Stdio};
 use topo_analysis::write_table;
 
 /// Most memory of a target, in MB, and most seconds for one input.
-const LIMITS: [&str; 2] = ["-rss_limit_mb=2048", "-timeout=20"];
+const LIMITS: [&str; 2] = ["-rss_limit_mb=2048", "-timeout=60"];
 
 /// What a target went through.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
@@ -192,7 +192,7 @@ impl Row {
                 seconds = rest.split_whitespace().next().map_or(0, number);
             } else if let Some((_, rest)) = line.split_once(" corp: ") {
                 row.corpus = rest.split('/').next().map_or(0, number);
-            } else if line.contains("Test unit written to ") {
+            } else if line.contains("ERROR: libFuzzer") {
                 row.findings += 1;
             }
         }
@@ -228,7 +228,7 @@ mod tests {
         let row = Row::of(
             "vect",
             "#16384\tpulse  cov: 1432 ft: 5127 corp: 312/9041b lim: 163 exec/s: 8192 rss: 61Mb\n\
-             artifact_prefix='a/'; Test unit written to a/crash-1\n\
+             ==7== ERROR: libFuzzer: deadly signal\n\
              Done 245760 runs in 31 second(s)\n\
              stat::number_of_executed_units: 245760\n\
              stat::average_exec_per_sec:     7927\n",
