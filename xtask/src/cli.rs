@@ -264,6 +264,9 @@ pub struct FuzzArgs {
     /// Only make the table, from what earlier runs printed.
     #[arg(long)]
     pub report: bool,
+    /// Put the table into docs/fuzzing.md.
+    #[arg(long)]
+    pub record: bool,
     /// Folder of the results.
     #[arg(long, value_name = "DIR", default_value = "results")]
     pub out: PathBuf,
@@ -275,6 +278,9 @@ pub struct CostArgs {
     /// How large the runs are: draft or standard.
     #[arg(long, value_enum, default_value_t = Quality::Draft)]
     pub quality: Quality,
+    /// Put the table into docs/cost.md.
+    #[arg(long)]
+    pub record: bool,
     /// Folder of the results.
     #[arg(long, value_name = "DIR", default_value = "results")]
     pub out: PathBuf,

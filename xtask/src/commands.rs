@@ -12,6 +12,7 @@ mod figures;
 mod fuzz;
 mod knot;
 mod packages;
+mod record;
 mod run;
 mod stability;
 mod test;

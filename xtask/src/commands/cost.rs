@@ -1,5 +1,6 @@
 //! `cargo xtask cost`: what each term of a scene costs in time and bytes, measured with it and without it.
 
+use super::record::record;
 use crate::cli::CostArgs;
 use crate::error::XtaskError;
 use crate::figures::Quality;
@@ -37,6 +38,9 @@ pub fn run(args: &CostArgs) -> Result<(), XtaskError> {
     println!("{text}");
     if stop.is_requested() {
         return Err(XtaskError::Interrupted);
+    }
+    if args.record {
+        record("cost.md", &text)?;
     }
     Ok(())
 }

@@ -1,6 +1,7 @@
 //! `cargo xtask fuzz`: every parser fed with made-up files, and a table of how long and with what outcome.
 
 use super::cargo::{cargo, step};
+use super::record::record;
 use crate::cli::FuzzArgs;
 use crate::data;
 use crate::error::XtaskError;
@@ -63,6 +64,9 @@ pub fn run(args: &FuzzArgs) -> Result<(), XtaskError> {
     write_table(&results.join("fuzz.csv"), &rows)?;
     data::write(&results.join("fuzz.md"), text(&rows).as_bytes())?;
     println!("{}", text(&rows));
+    if args.record {
+        record("fuzzing.md", &text(&rows))?;
+    }
     let n_findings: u64 = rows.iter().map(|row| row.findings).sum();
     if n_findings > 0 {
         return Err(XtaskError::Step(format!(
