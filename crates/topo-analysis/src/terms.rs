@@ -51,17 +51,20 @@ struct Taken {
     term_calls: u64,
 }
 
+/// Runs a scene, with the term or without.
+type Run = dyn Fn(bool, &Interrupt) -> Result<Taken, AnalysisError> + Send + Sync;
+
 /// A term and how a scene is run with and without it.
 struct Term {
     system: &'static str,
     name: &'static str,
     /// Told of both scenes.
     quantity: String,
-    run: Box<dyn Fn(bool, &Interrupt) -> Result<Taken, AnalysisError> + Send + Sync>,
+    run: Box<Run>,
 }
 
 /// Runs of each scene.
-const N_RUNS: usize = 3;
+const N_RUNS: usize = 5;
 
 /// Measures every term, on one thread; `told` hears of each as it is done.
 ///
