@@ -60,10 +60,24 @@ impl fmt::Display for Wish {
         match self {
             Self::Accuracy(error) => write!(f, "accuracy = {error}"),
             Self::Budget(seconds) => {
-                let time = std::time::Duration::from_secs_f64(*seconds);
-                write!(f, "budget = \"{}\"", humantime::format_duration(time))
+                write!(f, "budget = \"{}\"", duration(*seconds))
             }
         }
+    }
+}
+
+/// A time as scenes write it; what is beyond all ages is as long as can be written.
+fn duration(seconds: f64) -> String {
+    use std::time::Duration;
+    let time = Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX);
+    humantime::format_duration(time).to_string()
+}
+
+/// The key `budget` of a scene with this wish.
+pub(crate) fn budget(wish: Option<Wish>) -> Option<String> {
+    match wish {
+        Some(Wish::Budget(seconds)) => Some(duration(seconds)),
+        _ => None,
     }
 }
 

@@ -1,24 +1,14 @@
 //! `cargo xtask cost`: what each term of a scene costs in time and bytes, measured with it and without it.
 
+use super::effort;
 use super::record::record;
 use crate::cli::CostArgs;
 use crate::error::XtaskError;
-use crate::figures::Quality;
 use crate::{data, interrupt};
-use topo_analysis::{Effort, TermCost, term_costs, write_table};
+use topo_analysis::{TermCost, term_costs, write_table};
 
 pub fn run(args: &CostArgs) -> Result<(), XtaskError> {
-    let effort = match args.quality {
-        Quality::Draft => Effort::Draft,
-        Quality::Standard => Effort::Standard,
-        Quality::Paper => {
-            return Err(XtaskError::Argument {
-                key: "--quality",
-                value: "paper".to_owned(),
-                remedy: "terms are measured at draft or standard".to_owned(),
-            });
-        }
-    };
+    let effort = effort(args.quality)?;
     let stop = interrupt::install();
     let told = |row: &TermCost| {
         eprintln!(

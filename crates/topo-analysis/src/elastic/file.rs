@@ -30,7 +30,7 @@ use super::scene::ElasticScene;
 use crate::AnalysisError;
 use crate::scene::read_text;
 use crate::timeline::TimelineSettings;
-use crate::wish::WishOr;
+use crate::wish::{Wish, WishOr, budget};
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -268,13 +268,13 @@ impl ElasticScene {
 
     /// The scene as the text of a file with every value written out; [`parse`](Self::parse) gives the same scene back.
     ///
-    /// A file cannot say the folder of the tables, nor what only presets set: those must be a file's own.
+    /// A file cannot say the folder of the tables, fixed cuts, nor what only presets set: those must be a file's own.
     ///
     /// # Validation
     /// `elastic_scenes_come_back_as_written`, `poisson_ratios_come_back`
     pub fn text(&self) -> String {
         let rod = &self.rod;
-        let file = File {
+        let mut file = File {
             rod: RodTable {
                 knot: Names::List(self.knots.clone()),
                 slenderness: rod.slenderness,
@@ -297,7 +297,7 @@ impl ElasticScene {
                 closures: Some(self.timeline.closures),
                 ends: self.discharge.ends,
             },
-            accuracy: AccuracyTable {
+            accuracy: WishOr::Settings(AccuracyTable {
                 preset: self.preset,
                 edges: Some(rod.n_edges),
                 tolerance: Some(self.accuracy.tolerance),
@@ -305,8 +305,12 @@ impl ElasticScene {
                 integrator: Some(self.accuracy.integrator),
                 reuse: Some(self.accuracy.reuse),
                 max_steps: Some(self.accuracy.max_steps),
-            },
+            }),
+            budget: budget(self.wish),
         };
+        if let Some(Wish::Accuracy(error)) = self.wish {
+            file.accuracy = WishOr::Wish(error);
+        }
         // Tables of numbers and names always have a text.
         toml::to_string(&file).unwrap_or_default()
     }

@@ -31,7 +31,7 @@ use super::scene::NematicScene;
 use crate::AnalysisError;
 use crate::elastic::Numbers;
 use crate::scene::read_text;
-use crate::wish::WishOr;
+use crate::wish::{Wish, WishOr, budget};
 
 /// The colloid and its windings.
 #[derive(Debug, Deserialize)]
@@ -223,7 +223,15 @@ impl NematicScene {
             }
             put("flow", flow);
         }
-        put("accuracy", table_of(&self.accuracy));
+        match self.wish {
+            Some(Wish::Accuracy(error)) => {
+                file.insert("accuracy".to_owned(), toml::Value::Float(error));
+            }
+            _ => put("accuracy", table_of(&self.accuracy)),
+        }
+        if let Some(text) = budget(self.wish) {
+            file.insert("budget".to_owned(), toml::Value::String(text));
+        }
         // Tables of numbers and names always have a text.
         toml::to_string(&file).unwrap_or_default()
     }
