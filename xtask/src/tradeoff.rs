@@ -31,6 +31,8 @@ fn quantities(settings: &[Setting]) -> Vec<&str> {
 }
 
 const PANEL: [f64; 2] = [210.0, 170.0];
+/// Width that the legend and the note need.
+const LEGEND: f64 = 340.0;
 /// From one panel to the next, across and down.
 const STEP: [f64; 2] = [276.0, 226.0];
 
@@ -45,7 +47,7 @@ pub fn draw(system: TradeoffSystem, rows: &[TradeoffRow]) -> Result<Picture, Xta
         names.len().max(2)
     };
     let foot = STEP[1] * names.len().div_ceil(columns) as f64;
-    let mut canvas = Canvas::new(STEP[0] * columns as f64, foot + 42.0, 4.0);
+    let mut canvas = Canvas::new((STEP[0] * columns as f64).max(LEGEND), foot + 42.0, 4.0);
     let drawn = |s: &&Setting| s.setting != REFERENCE && s.cpu_seconds > 0.0;
     let mut families: Vec<&str> = Vec::new();
     for s in settings.iter().filter(drawn) {

@@ -107,9 +107,12 @@ impl Meter<'_> {
     }
 }
 
+/// Numbers by quantity; none where the run did not come so far.
+type Quantities = Vec<(&'static str, Option<f64>)>;
+
 /// What a run found: numbers by quantity, processor seconds, most bytes held.
 pub(crate) struct Outcome {
-    quantities: Vec<(&'static str, Option<f64>)>,
+    quantities: Quantities,
     cpu_seconds: f64,
     peak_bytes: u64,
 }

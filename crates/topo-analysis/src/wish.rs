@@ -124,7 +124,7 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for WishOr<T> {
     }
 }
 
-impl<T: Default> WishOr<T> {
+impl<T: Default + PartialEq> WishOr<T> {
     /// The settings and the wish of a scene with this key and the key `budget`, or the key at fault, its value and what would
     /// be right.
     pub(crate) fn with_budget(
@@ -141,6 +141,11 @@ impl<T: Default> WishOr<T> {
                 "keep either accuracy or budget".to_owned(),
             )),
             (Self::Settings(settings), None) => Ok((settings, None)),
+            (Self::Settings(settings), Some(text)) if settings != T::default() => Err((
+                "budget",
+                format!("\"{text}\""),
+                "it stands instead of the table [accuracy]: keep one of the two".to_owned(),
+            )),
             (Self::Settings(_), Some(text)) => Wish::budget(text)
                 .map(|wish| (T::default(), Some(wish)))
                 .map_err(|remedy| ("budget", format!("\"{text}\""), remedy)),
@@ -198,6 +203,10 @@ mod tests {
             ("budget = \"soon\"", ["budget = \"soon\"", "10 min"]),
             ("budget = \"0\"", ["budget", "above zero"]),
             ("accuracy = 0.1\nbudget = \"1h\"", ["accuracy", "either"]),
+            (
+                "budget = \"1h\"\n[accuracy]\nedges = 90",
+                ["budget", "instead"],
+            ),
             ("accuracy = \"good\"", ["accuracy", "0.02"]),
             ("[accuracy]\nedgse = 3", ["edgse", "edges"]),
         ] {
