@@ -33,6 +33,10 @@ pub struct Point {
 /// Share of the cases whose error the estimate is to cover; more than promised, as other cases are less alike.
 const COVERED: f64 = 0.95;
 
+/// A quantile of a dozen cases is no sure one. With this factor, the smallest round one that does, estimates covered nine tenths of
+/// 39 other cases; it was then checked on cases that it was not set on.
+const SAFETY: f64 = 2.0;
+
 impl Point {
     /// Estimate of the relative error of a run at this setting that differs by `difference` (relative) from the coarser one.
     pub fn estimate(&self, difference: Option<f64>) -> f64 {
@@ -113,7 +117,7 @@ pub fn points(system: TradeoffSystem, rows: &[TradeoffRow]) -> Vec<Point> {
                     .map(|(b, a)| b / a - 1.0);
                 error / point.estimate(difference)
             });
-            point.scale = quantile(ratios, COVERED).unwrap_or(1.0).max(0.2);
+            point.scale = SAFETY * quantile(ratios, COVERED).unwrap_or(1.0).max(0.2);
             points.push(point);
         }
     }
@@ -196,7 +200,7 @@ mod tests {
         assert!((p.median_error - 0.012).abs() < 1e-12);
         // differences are four per cent, errors 1 to 1.4
         let estimate = p.estimate(Some(0.04 / 1.01));
-        assert!((0.0135..0.02).contains(&estimate), "{estimate}");
+        assert!((0.027..0.04).contains(&estimate), "{estimate}");
         assert!(p.estimate(None) > 0.1);
     }
 }
