@@ -322,7 +322,7 @@ mod tests {
         ];
         let text = report(Quality::Draft, &[(TradeoffSystem::Rod, rows.clone())]);
         for line in [
-            "| t99 | 10 % | resolution coarse | 8.0 % | 8.0 % | 0.10 | 3.0 |",
+            "| t99 | 20 % | resolution coarse | 8.0 % | 8.0 % | 0.10 | 3.0 |",
             "| t99 | 5.0 % | resolution middle | 1.5 %",
             "| t99 | 1.0 % | resolution fine | 0.10 %",
         ] {

@@ -365,10 +365,9 @@ mod tests {
             ("radius = 5\nspacing = 40", "spacing"),
         ] {
             let text = format!("[nematic]\n{change}\nq = 1\n");
-            let scene = NematicScene::parse(&text, Path::new("scene.toml")).unwrap();
-            let error = run_nematic_sweep(&scene, &settings(folder.path(), 1), &|_| {})
-                .unwrap_err()
-                .to_string();
+            let run = |scene| run_nematic_sweep(&scene, &settings(folder.path(), 1), &|_| {});
+            let scene = NematicScene::parse(&text, Path::new("scene.toml"));
+            let error = scene.and_then(run).unwrap_err().to_string();
             assert!(error.contains(word), "{change:?}: {error}");
         }
     }

@@ -40,7 +40,8 @@ impl Core {
     pub(crate) fn find(state: &RodState, out: &mut Vec<CorePair>) {
         out.clear();
         let (x, n, l0) = (state.vertices(), state.n_vertices(), state.rest_length());
-        let stride = ((SPACING / l0) as usize).max(1);
+        // on a rod much shorter than the spacing no pair is far enough apart
+        let stride = ((SPACING / l0) as usize).clamp(1, n.max(1));
         let share = l0 * stride as f64;
         let longest = (std::f64::consts::PI / share) as usize;
         for k in 1..=longest {
