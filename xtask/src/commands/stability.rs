@@ -63,11 +63,9 @@ pub fn run(args: &SystemsArgs) -> Result<(), XtaskError> {
         println!("{}", stability::summary(system.name(), &rows, &wall));
         maps.push((system.name(), rows));
     }
-    if args.only.is_empty() {
-        let report = stability::report(args.quality, &maps);
-        data::write(&folder.join("stability.md"), report.as_bytes())?;
-        println!("report: {}", folder.join("stability.md").display());
-    }
+    let report = stability::report(args.quality, &maps);
+    data::write(&folder.join("stability.md"), report.as_bytes())?;
+    println!("report: {}", folder.join("stability.md").display());
     // Rows carry where runs must converge.
     let broken: usize = maps.iter().map(|(_, rows)| stability::n_broken(rows)).sum();
     if broken > 0 {
