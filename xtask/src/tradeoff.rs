@@ -9,9 +9,7 @@ use crate::plot::color::{BLUE, GREEN, INK, PURPLE, QUIET, VERMILION};
 use crate::plot::panel::{Axis, Panel};
 use crate::plot::style::Style;
 use kuva::prelude::{LinePlot, Plot, ScatterPlot};
-use topo_analysis::{
-    HeldBackRow, REFERENCE, Setting, TradeoffRow, TradeoffSystem, quantile, settings_of,
-};
+use topo_analysis::{HeldBackRow, REFERENCE, Setting, System, TradeoffRow, quantile, settings_of};
 
 /// Errors that the short table asks for.
 const WISHES: [f64; 8] = [0.2, 0.1, 0.05, 0.03, 0.02, 0.01, 0.005, 0.002];
@@ -37,7 +35,7 @@ const LEGEND: f64 = 340.0;
 const STEP: [f64; 2] = [276.0, 226.0];
 
 /// Error against cost, one panel a quantity; the front is joined by a line.
-pub fn draw(system: TradeoffSystem, rows: &[TradeoffRow]) -> Result<Picture, XtaskError> {
+pub fn draw(system: System, rows: &[TradeoffRow]) -> Result<Picture, XtaskError> {
     let settings = settings_of(rows);
     let names = quantities(&settings);
     // four panels make a square
@@ -139,7 +137,7 @@ fn label(quantity: &str) -> &str {
 }
 
 /// The report: what accuracy costs, and every setting with its errors.
-pub fn report(quality: Quality, tables: &[(TradeoffSystem, Vec<TradeoffRow>)]) -> String {
+pub fn report(quality: Quality, tables: &[(System, Vec<TradeoffRow>)]) -> String {
     let mut text = format!(
         "# What accuracy costs\n\nMade by `cargo xtask tradeoff` at {quality}; the tables are \
          `tradeoff/{{rod,nematic,knots}}.csv`. Errors are relative to converged references: the \
@@ -320,7 +318,7 @@ mod tests {
             row("middle", 1.015, 0.015, 0.5),
             row("fine", 1.001, 0.001, 3.0),
         ];
-        let text = report(Quality::Draft, &[(TradeoffSystem::Rod, rows.clone())]);
+        let text = report(Quality::Draft, &[(System::Rod, rows.clone())]);
         for line in [
             "| t99 | 20 % | resolution coarse | 8.0 % | 8.0 % | 0.10 | 3.0 |",
             "| t99 | 5.0 % | resolution middle | 1.5 %",
@@ -328,7 +326,7 @@ mod tests {
         ] {
             assert!(text.contains(line), "{line} is not in\n{text}");
         }
-        let picture = draw(TradeoffSystem::Rod, &rows).unwrap();
+        let picture = draw(System::Rod, &rows).unwrap();
         assert!(picture.svg.contains("resolution") && !picture.png.is_empty());
     }
 }

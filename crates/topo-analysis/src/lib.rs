@@ -17,6 +17,7 @@ mod progress;
 mod scene;
 mod stability;
 mod statistics;
+mod system;
 mod table;
 mod terms;
 mod timeline;
@@ -41,14 +42,15 @@ pub use nematic::{
 };
 pub use progress::{Event, Shard, SweepSettings, with_jobs};
 pub use scene::Scene;
-pub use stability::{Effort, ExtremeSystem, StabilityRow, n_extremes, stability};
+pub use stability::{StabilityRow, n_extremes, stability};
 pub use statistics::{Spread, median, quantile};
+pub use system::{Effort, System};
 pub use table::{KnotRow, SweepRow, parse_table, read_table, table_bytes, write_table};
 pub use terms::{TermCost, term_costs};
 pub use timeline::{Timeline, TimelineSettings, TypedSample, UNKNOT};
 pub use times::{DischargeTimes, ELASTIC_SHARES, Interpolated};
 pub use tradeoff::{
     HeldBackRow, PeakBytes, REFERENCE, Setting, TradeoffEvent, TradeoffRow, TradeoffRun,
-    TradeoffSystem, TradeoffWork, compared, held_back, settings_of, tradeoff,
+    TradeoffWork, compared, held_back, settings_of, tradeoff,
 };
 pub use wish::{ErrorRow, Grant, Point, Wish, errors_of_colloids, errors_of_rods, points};

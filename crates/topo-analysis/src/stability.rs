@@ -11,39 +11,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use topo_core::{CpuClock, Interrupt};
 
-/// Which part of the product is driven to its extremes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum ExtremeSystem {
-    /// Charge, cut and discharge of knotted rods.
-    Rod,
-    /// Charge, switch and discharge of colloids.
-    Nematic,
-    /// Tightening of long braids, and degenerate curves.
-    Knots,
-}
-
-impl ExtremeSystem {
-    /// All of them.
-    pub const ALL: [Self; 3] = [Self::Rod, Self::Nematic, Self::Knots];
-
-    /// Stem of its table.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Rod => "rod",
-            Self::Nematic => "nematic",
-            Self::Knots => "knots",
-        }
-    }
-}
-
-/// How long each run of a map is followed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Effort {
-    /// Part of the charge and most of the discharge: minutes for all maps.
-    Draft,
-    /// Everything, as in the published sweeps.
-    Standard,
-}
+use crate::system::{Effort, System};
 
 /// One run of a map, as tables hold it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -151,7 +119,7 @@ impl Cell {
 /// # Validation
 /// `maps_are_as_large_as_promised`, `a_panic_is_an_outcome`
 pub fn stability(
-    system: ExtremeSystem,
+    system: System,
     effort: Effort,
     known: &[StabilityRow],
     interrupt: &Interrupt,
@@ -181,15 +149,15 @@ pub fn stability(
 }
 
 /// Number of runs of all maps of a system.
-pub fn n_extremes(system: ExtremeSystem) -> usize {
+pub fn n_extremes(system: System) -> usize {
     cells(system, Effort::Draft).len()
 }
 
-fn cells(system: ExtremeSystem, effort: Effort) -> Vec<Cell> {
+fn cells(system: System, effort: Effort) -> Vec<Cell> {
     match system {
-        ExtremeSystem::Rod => rod::cells(effort),
-        ExtremeSystem::Nematic => nematic::cells(effort),
-        ExtremeSystem::Knots => knots::cells(effort),
+        System::Rod => rod::cells(effort),
+        System::Nematic => nematic::cells(effort),
+        System::Knots => knots::cells(effort),
     }
 }
 
@@ -200,13 +168,9 @@ mod tests {
     #[test]
     fn maps_are_as_large_as_promised() {
         let n = n_extremes;
-        assert!(n(ExtremeSystem::Rod) >= 300, "{}", n(ExtremeSystem::Rod));
-        assert!(
-            n(ExtremeSystem::Nematic) >= 150,
-            "{}",
-            n(ExtremeSystem::Nematic)
-        );
-        assert!(n(ExtremeSystem::Knots) >= 60, "{}", n(ExtremeSystem::Knots));
+        assert!(n(System::Rod) >= 300, "{}", n(System::Rod));
+        assert!(n(System::Nematic) >= 150, "{}", n(System::Nematic));
+        assert!(n(System::Knots) >= 60, "{}", n(System::Knots));
     }
 
     #[test]

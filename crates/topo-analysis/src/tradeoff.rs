@@ -11,35 +11,10 @@ use serde::{Deserialize, Serialize};
 use topo_core::{CpuClock, Interrupt};
 
 use crate::AnalysisError;
-use crate::stability::Effort;
+use crate::system::{Effort, System};
 pub use front::{Setting, settings_of};
 pub use held_back::{HeldBackRow, held_back};
 pub(crate) use nematic::{MEASURED_CELL, MEASURED_RADIUS};
-
-/// Which part of the product is measured.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum TradeoffSystem {
-    /// Charge, cut and discharge of knotted rods.
-    Rod,
-    /// Charge, switch and discharge of colloids.
-    Nematic,
-    /// Tight shapes of knots.
-    Knots,
-}
-
-impl TradeoffSystem {
-    /// All of them.
-    pub const ALL: [Self; 3] = [Self::Rod, Self::Nematic, Self::Knots];
-
-    /// Stem of its table.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Rod => "rod",
-            Self::Nematic => "nematic",
-            Self::Knots => "knots",
-        }
-    }
-}
 
 /// Name of the setting that the others are compared with.
 pub const REFERENCE: &str = "reference";
@@ -173,14 +148,14 @@ pub enum TradeoffEvent<'a> {
 /// # Errors
 /// A case that cannot be set up; a run that stops early is no error, its numbers are missing.
 pub fn tradeoff(
-    system: TradeoffSystem,
+    system: System,
     effort: Effort,
     work: &TradeoffWork<'_>,
 ) -> Result<Vec<TradeoffRun>, AnalysisError> {
     let trials = match system {
-        TradeoffSystem::Rod => rod::trials(effort, work)?,
-        TradeoffSystem::Nematic => nematic::trials(effort),
-        TradeoffSystem::Knots => knots::trials(effort)?,
+        System::Rod => rod::trials(effort, work)?,
+        System::Nematic => nematic::trials(effort),
+        System::Knots => knots::trials(effort)?,
     };
     (work.told)(TradeoffEvent::Begin(trials.len()));
     run_all(&trials, work)
@@ -232,7 +207,7 @@ fn run_all(trials: &[Trial], work: &TradeoffWork<'_>) -> Result<Vec<TradeoffRun>
 ///
 /// # Validation
 /// `errors_are_against_the_reference_of_the_case`, `the_front_has_no_dominated_setting`
-pub fn compared(system: TradeoffSystem, runs: &[TradeoffRun]) -> Vec<TradeoffRow> {
+pub fn compared(system: System, runs: &[TradeoffRun]) -> Vec<TradeoffRow> {
     let mut rows: Vec<TradeoffRow> = runs
         .iter()
         .map(|run| {
@@ -266,11 +241,11 @@ pub fn compared(system: TradeoffSystem, runs: &[TradeoffRun]) -> Vec<TradeoffRow
 }
 
 /// Edges (or spacing) and tolerance of a value of the setting `resolution`.
-pub(crate) fn resolution_of(system: TradeoffSystem, value: &str) -> Option<(f64, f64)> {
+pub(crate) fn resolution_of(system: System, value: &str) -> Option<(f64, f64)> {
     match system {
-        TradeoffSystem::Rod => rod::resolution_of(value),
-        TradeoffSystem::Nematic => nematic::resolution_of(value),
-        TradeoffSystem::Knots => None,
+        System::Rod => rod::resolution_of(value),
+        System::Nematic => nematic::resolution_of(value),
+        System::Knots => None,
     }
 }
 
@@ -307,7 +282,7 @@ mod tests {
             run("b", "coarse", 19.0, 1.0),
             run("c", "coarse", 19.0, 1.0),
         ];
-        let rows = compared(TradeoffSystem::Rod, &runs);
+        let rows = compared(System::Rod, &runs);
         let errors: Vec<_> = rows.iter().map(|r| r.relative_error).collect();
         assert_eq!(errors[..2], [Some(0.0); 2]);
         assert!((errors[2].unwrap() - 0.1).abs() < 1e-12);

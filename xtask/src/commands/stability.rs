@@ -7,7 +7,7 @@ use crate::cli::SystemsArgs;
 use crate::error::XtaskError;
 use crate::progress::Progress;
 use crate::{data, interrupt, stability};
-use topo_analysis::{ExtremeSystem, StabilityRow, n_extremes, read_table, with_jobs, write_table};
+use topo_analysis::{StabilityRow, System, n_extremes, read_table, with_jobs, write_table};
 
 /// Changes with whatever changes the outcome of a run.
 const VERSION: u32 = 2;
@@ -22,7 +22,7 @@ pub fn run(args: &SystemsArgs) -> Result<(), XtaskError> {
         source,
     })?;
     let mut maps = Vec::new();
-    for system in ExtremeSystem::ALL {
+    for system in System::ALL {
         if !args.only.is_empty() && !args.only.iter().any(|name| name == system.name()) {
             continue;
         }

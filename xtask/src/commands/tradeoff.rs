@@ -8,10 +8,11 @@ use super::threads;
 use crate::cli::{SystemsArgs, TradeoffArgs};
 use crate::error::XtaskError;
 use crate::progress::Progress;
+use crate::provenance::workspace;
 use crate::{data, interrupt};
 use topo_analysis::{
-    AnalysisError, TradeoffEvent, TradeoffRun, TradeoffSystem, TradeoffWork, compared, held_back,
-    points, read_table, tradeoff, with_jobs, writable, write_table,
+    AnalysisError, System, TradeoffEvent, TradeoffRun, TradeoffWork, compared, held_back, points,
+    read_table, tradeoff, with_jobs, writable, write_table,
 };
 use topo_core::Interrupt;
 
@@ -49,7 +50,7 @@ fn measure_all(args: &TradeoffArgs, folder: &Path) -> Result<(), XtaskError> {
     let effort = super::effort(args.quality)?;
     let stop = interrupt::install();
     let mut tables = Vec::new();
-    for system in TradeoffSystem::ALL {
+    for system in System::ALL {
         if !args.only.is_empty() && !args.only.iter().any(|name| name == system.name()) {
             continue;
         }
@@ -69,7 +70,9 @@ fn measure_all(args: &TradeoffArgs, folder: &Path) -> Result<(), XtaskError> {
         }
         let points = points(system, &rows);
         if *record && !points.is_empty() {
-            let path = Path::new(TABLES).join(format!("tradeoff-{}.csv", system.name()));
+            let path = workspace()
+                .join(TABLES)
+                .join(format!("tradeoff-{}.csv", system.name()));
             write_table(&path, &points)?;
             println!("recorded: {}", path.display());
         }

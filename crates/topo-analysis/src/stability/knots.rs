@@ -10,7 +10,8 @@ use topo_knots::{
 };
 
 use super::rod::trefoil_at;
-use super::{Cell, Effort, Verdict};
+use super::{Cell, Verdict};
+use crate::system::Effort;
 
 type V = Vector3<f64>;
 

@@ -10,7 +10,8 @@ use topo_nematic::{
 };
 
 use super::watch::violations;
-use super::{Cell, Effort, Verdict};
+use super::{Cell, Verdict};
+use crate::system::Effort;
 
 /// Energy that is rounding, in L xi_N: that of a small distortion is hundreds.
 const NOTHING: f64 = 1e-6;

@@ -8,7 +8,8 @@ use topo_rod::{
 };
 
 use super::watch::violations;
-use super::{Cell, Effort, Verdict};
+use super::{Cell, Verdict};
+use crate::system::Effort;
 
 /// Drift of the linking number of a closed rod, in turns, that counts as a crossing.
 const CROSSING: f64 = 1e-8;

@@ -125,7 +125,7 @@ pub(super) fn mark(rows: &mut [TradeoffRow]) {
 #[cfg(test)]
 mod tests {
     use super::super::tests::run;
-    use super::super::{TradeoffSystem, compared};
+    use super::super::{System, compared};
     use super::*;
 
     #[test]
@@ -137,7 +137,7 @@ mod tests {
             run("a", "worse than middle", 11.5, 3.0),
             run("a", "fine", 10.1, 9.0),
         ];
-        let rows = compared(TradeoffSystem::Rod, &runs);
+        let rows = compared(System::Rod, &runs);
         let front: Vec<bool> = rows.iter().map(|r| r.pareto).collect();
         assert_eq!(front, [false, true, true, false, true]);
     }
@@ -155,7 +155,7 @@ mod tests {
             lost,
             model,
         ];
-        let settings = settings_of(&compared(TradeoffSystem::Rod, &runs));
+        let settings = settings_of(&compared(System::Rod, &runs));
         let of = |value: &str| settings.iter().find(|s| s.value == value).unwrap();
         assert!(!of("100").pareto && of("cheap").pareto);
         assert_eq!((of("cheap").n_cases, of("cheap").n_failed), (1, 1));

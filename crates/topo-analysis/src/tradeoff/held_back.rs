@@ -2,9 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{
-    REFERENCE, TradeoffEvent, TradeoffRun, TradeoffSystem, TradeoffWork, nematic, rod, run_all,
-};
+use super::{REFERENCE, System, TradeoffEvent, TradeoffRun, TradeoffWork, nematic, rod, run_all};
 use crate::AnalysisError;
 use crate::wish::{Load, Measured, Point, Wish, grant};
 
@@ -71,20 +69,13 @@ pub fn held_back(
     for (k, (case, p)) in rods.iter().zip(&rod_points).enumerate() {
         let name = rod::case_name(case);
         let at = |n: f64, t: f64| rod::resolution(n as usize, t);
-        rows.push(row(
-            TradeoffSystem::Rod,
-            name,
-            RODS[k % RODS.len()],
-            p,
-            &at,
-            &runs,
-        ));
+        rows.push(row(System::Rod, name, RODS[k % RODS.len()], p, &at, &runs));
     }
     for (k, (case, p)) in colloids.iter().zip(&colloid_points).enumerate() {
         let name = nematic::case_name(case);
         let asked = COLLOIDS[k % COLLOIDS.len()];
         rows.push(row(
-            TradeoffSystem::Nematic,
+            System::Nematic,
             name,
             asked,
             p,
@@ -112,14 +103,14 @@ fn granted(table: Measured, asked: &[f64], n: usize) -> Result<Vec<Point>, Analy
 }
 
 fn row(
-    system: TradeoffSystem,
+    system: System,
     case: String,
     accuracy: f64,
     point: &Point,
     name: &dyn Fn(f64, f64) -> String,
     runs: &[TradeoffRun],
 ) -> HeldBackRow {
-    let quantity = if system == TradeoffSystem::Rod {
+    let quantity = if system == System::Rod {
         "t99"
     } else {
         "t99.9"

@@ -5,7 +5,7 @@ use topo_knots::{KnotTable, TightenSettings, second_opinion, tighten_entry};
 
 use super::{Outcome, REFERENCE, Trial};
 use crate::AnalysisError;
-use crate::stability::Effort;
+use crate::system::Effort;
 
 const QUANTITY: &str = "ropelength";
 

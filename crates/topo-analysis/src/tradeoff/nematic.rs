@@ -9,7 +9,7 @@ use topo_nematic::{
 
 use super::{Outcome, Quantities, REFERENCE, Trial};
 use crate::nematic::NEMATIC_SHARES;
-use crate::stability::Effort;
+use crate::system::Effort;
 use crate::times::DischargeTimes;
 use crate::wish::Point;
 

@@ -12,7 +12,7 @@ use crate::elastic::{
     ACCURACY_CASES, CaseJob, ElasticScene, MeasuredDischarge, Preset, measured_discharge,
 };
 use crate::knots::{Shapes, tight_shapes};
-use crate::stability::Effort;
+use crate::system::Effort;
 use crate::wish::Point;
 
 /// Cases of a draft: knots of all sizes, twisted and not.

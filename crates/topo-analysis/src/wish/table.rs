@@ -3,7 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use crate::statistics::{median, quantile};
-use crate::tradeoff::{TradeoffRow, TradeoffSystem, resolution_of};
+use crate::system::System;
+use crate::tradeoff::{TradeoffRow, resolution_of};
 
 /// One setting, as measured over the cases of a trade-off in the time that wishes are about.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -45,11 +46,11 @@ impl Point {
 }
 
 /// The points that a trade-off measured: each setting with a coarser one beside it.
-pub fn points(system: TradeoffSystem, rows: &[TradeoffRow]) -> Vec<Point> {
+pub fn points(system: System, rows: &[TradeoffRow]) -> Vec<Point> {
     let quantity = match system {
-        TradeoffSystem::Rod => "t99",
-        TradeoffSystem::Nematic => "t99.9",
-        TradeoffSystem::Knots => return Vec::new(),
+        System::Rod => "t99",
+        System::Nematic => "t99.9",
+        System::Knots => return Vec::new(),
     };
     let of: Vec<(f64, f64, &TradeoffRow)> = rows
         .iter()
@@ -64,7 +65,7 @@ pub fn points(system: TradeoffSystem, rows: &[TradeoffRow]) -> Vec<Point> {
         of.iter().map(|r| (r.0, r.1)).unzip();
     distinct(&mut resolutions);
     distinct(&mut tolerances);
-    if system == TradeoffSystem::Nematic {
+    if system == System::Nematic {
         // from coarse to fine, as edges are
         resolutions.reverse();
     }
@@ -193,7 +194,7 @@ mod tests {
                 });
             }
         }
-        let found = points(TradeoffSystem::Rod, &rows);
+        let found = points(System::Rod, &rows);
         assert_eq!(found.len(), 1, "the coarsest has nothing to compare with");
         let p = found[0];
         assert_eq!((p.resolution, p.check_resolution), (200.0, 100.0));
