@@ -26,10 +26,9 @@ fn quick() -> TightenSettings {
 
 fn check_two_methods(names: &[&str]) {
     let settings = TightenSettings {
-        per_unit: 8.0,
-        tolerance: 1e-5,
-        max_steps: 400,
-        ..quick()
+        tolerance: 2e-6,
+        max_steps: 2000,
+        ..TightenSettings::standard()
     };
     for name in names {
         let first = tight(name, &settings);

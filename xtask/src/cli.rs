@@ -28,7 +28,8 @@ pub enum Command {
   cargo xtask figures                              all figures, draft quality
   cargo xtask figures --only elastic-discharge     one of them
   cargo xtask figures --quality standard --out results-standard
-  cargo xtask figures --quality paper --shard 2/4 --out part-2    every fourth case, to be merged")]
+  cargo xtask figures --quality paper --shard 2/4 --out part-2    every fourth case, to be merged
+  cargo xtask figures --quality paper --as-is      draw the cases that are finished")]
     Figures(FiguresArgs),
     /// Run the scene of a file: charge, cut, discharge.
     #[command(after_help = "Examples:
@@ -114,6 +115,9 @@ pub struct FiguresArgs {
     /// Compute part I of N only and draw nothing; each part may run anywhere.
     #[arg(long, value_name = "I/N")]
     pub shard: Option<Shard>,
+    /// Compute nothing: draw what the folder holds of a sweep that is not finished.
+    #[arg(long, conflicts_with_all = ["shard", "fresh"])]
+    pub as_is: bool,
     /// Draw the tight knots of `knots-table` as thin tubes with their struts.
     #[arg(long)]
     pub struts: bool,

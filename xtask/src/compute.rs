@@ -33,6 +33,8 @@ pub struct Order<'a> {
     pub fresh: bool,
     /// The part of the cases computed here.
     pub shard: Option<Shard>,
+    /// Compute nothing.
+    pub as_is: bool,
     /// Whether the elastic sweep is needed.
     pub elastic: bool,
     /// Whether the nematic sweep is needed.
@@ -67,11 +69,12 @@ pub fn tables(
         fresh: order.fresh,
         interrupt: stop.clone(),
         shard: order.shard,
+        only_finished: order.as_is,
         ..SweepSettings::new(order.results)
     };
     topo_analysis::writable(order.results)?;
     estimate::tell(&estimate::of_order(order, &settings)?);
-    if order.knots {
+    if order.knots && !order.as_is {
         let start = Instant::now();
         let names = knots_of(&scene, &table)?;
         let more = more_knots(order.quality, &names, &table);

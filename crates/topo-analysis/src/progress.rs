@@ -66,6 +66,8 @@ pub struct SweepSettings {
     pub interrupt: Interrupt,
     /// The part of the cases that is computed here; `None`: all.
     pub shard: Option<Shard>,
+    /// Compute nothing: gather the table from what is finished.
+    pub only_finished: bool,
     /// Keep the whole nematic field at each time looked at, for other tools; tables do not need it.
     pub keep_fields: bool,
     /// Seconds between checkpoints inside a nematic case: a killed run loses at most about that.
@@ -84,6 +86,7 @@ impl SweepSettings {
             fresh: false,
             interrupt: Interrupt::new(),
             shard: None,
+            only_finished: false,
             keep_fields: false,
             checkpoint_seconds: CHECKPOINT_SECONDS,
         }
@@ -91,7 +94,7 @@ impl SweepSettings {
 
     /// Whether the case at a place of the scene's list is computed here.
     pub(crate) fn takes(&self, place: usize) -> bool {
-        self.shard.is_none_or(|s| s.takes(place))
+        !self.only_finished && self.shard.is_none_or(|s| s.takes(place))
     }
 }
 

@@ -26,6 +26,7 @@ pub fn run(args: &FiguresArgs) -> Result<(), XtaskError> {
         jobs,
         fresh: args.work.fresh,
         shard: args.shard,
+        as_is: args.as_is,
         elastic: chosen.iter().any(|f| f.table.starts_with("elastic/")),
         nematic: chosen.iter().any(|f| f.table.starts_with("nematic/")),
         knots: chosen.iter().any(|f| f.table.starts_with("knots/")),

@@ -16,7 +16,7 @@ pub fn of_order(
     let mut stages = BTreeMap::new();
     let table = KnotTable::builtin();
     let scene = ElasticScene::published(preset(order.quality));
-    if order.elastic || order.knots {
+    if (order.elastic || order.knots) && !order.as_is {
         let shapes = |names: &[String], tighten| {
             Estimate::of_shapes(names, &table, tighten, order.results, order.jobs)
         };

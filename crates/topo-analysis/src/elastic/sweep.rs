@@ -383,6 +383,13 @@ mod tests {
                 let file = file.unwrap();
                 std::fs::copy(file.path(), to.join(file.file_name())).unwrap();
             }
+            let told = SweepSettings {
+                only_finished: true,
+                ..settings(merged.path(), 1)
+            };
+            let so_far = run_sweep(&scene, &table, &told, &|_| {}).unwrap();
+            assert_eq!(so_far.n_computed, 0);
+            assert_eq!(so_far.rows.len(), if shard == "2/2" { 1 } else { 2 });
         }
         let report = run_sweep(&scene, &table, &settings(merged.path(), 1), &|_| {}).unwrap();
         assert_eq!((report.n_computed, report.n_reused), (0, 2));

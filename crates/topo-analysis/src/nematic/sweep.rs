@@ -433,6 +433,13 @@ mod tests {
             assert_eq!(estimate_nematic_sweep(&scene, &part).unwrap().n_cases, 1);
             let report = run_nematic_sweep(&scene, &part, &|_| {}).unwrap();
             assert!(report.n_computed == 1 && !report.interrupted);
+            // What is there can be told without computing the rest.
+            let told = SweepSettings {
+                only_finished: true,
+                ..settings(merged.path(), 1)
+            };
+            let so_far = run_nematic_sweep(&scene, &told, &|_| {}).unwrap();
+            assert!(so_far.n_computed == 0 && so_far.rows.len() == report.rows.len());
             assert!(report.wall_seconds > 0.0 && report.estimate.cpu_seconds > 0.0);
         }
         let report = run_nematic_sweep(&scene, &settings(merged.path(), 1), &|_| {}).unwrap();

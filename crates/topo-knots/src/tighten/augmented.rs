@@ -18,11 +18,12 @@ const REACH: f64 = 2.3;
 const STALE: f64 = 0.1;
 /// Vertices with a larger radius of curvature are not watched.
 const KINK_REACH: f64 = 3.0;
-/// Stiffness of the constraints, in units of the tension of the tube: at first, and at most.
+/// Stiffness of the constraints, in units of the tension of the tube: at first, and where doubling ends; stiffer ones slow the
+/// quasi-Newton steps more than they spare rounds.
 const STIFFNESS: f64 = 100.0;
-const MOST_STIFFNESS: f64 = 2000.0;
+const MOST_STIFFNESS: f64 = 300.0;
 /// Rounds of multipliers, and quasi-Newton steps in each.
-const MOST_ROUNDS: usize = 60;
+const MOST_ROUNDS: usize = 200;
 const MOST_STEPS: usize = 400;
 
 /// What the second method came to.

@@ -40,6 +40,7 @@ pub(super) fn minimise(
     let mut pairs: Vec<(Vec<f64>, Vec<f64>, f64)> = Vec::new();
     let (mut direction, mut trial, mut next) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
     let mut weights = [0.0; MEMORY];
+    let mut scale = 1.0;
     for _ in 0..most_steps {
         direction.copy_from_slice(&gradient);
         for (k, (s, y, rate)) in pairs.iter().enumerate().rev() {
@@ -47,6 +48,7 @@ pub(super) fn minimise(
             axpy(-weights[k], y, &mut direction);
         }
         objective.precondition(&mut direction);
+        direction.iter_mut().for_each(|d| *d *= scale);
         for (k, (s, y, rate)) in pairs.iter().enumerate() {
             let back = rate * dot(y, &direction);
             axpy(weights[k] - back, s, &mut direction);
@@ -97,6 +99,10 @@ pub(super) fn minimise(
         let y: Vec<f64> = next.iter().zip(&gradient).map(|(a, b)| a - b).collect();
         let curvature = dot(&s, &y);
         if curvature > 1e-10 * dot(&y, &y).sqrt() * dot(&s, &s).sqrt() {
+            // Scales the preconditioner to the curvature along the last step, so that full steps mostly serve.
+            let mut inverse = y.clone();
+            objective.precondition(&mut inverse);
+            scale = curvature / dot(&y, &inverse);
             pairs.push((s, y, 1.0 / curvature));
         }
         x.copy_from_slice(&trial);

@@ -85,6 +85,7 @@ pub fn second_opinion(tight: &TightKnot) -> Result<SecondOpinion, KnotError> {
             });
         }
         n = if 3 * n > 2 * n_fine { n_fine } else { 2 * n };
-        curve = curve.resampled(n)?;
+        // The spline sharpens some vertices so much that the whole curve would have to grow.
+        curve = curve.resampled(n)?.smoothed(2)?;
     }
 }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use rayon::prelude::*;
 
 use super::*;
-use crate::{KnotTable, thickness_brute_force};
+use crate::{KnotTable, V, thickness_brute_force};
 
 /// Writhe of ideal shapes, in absolute value.
 const WRITHE: [(&str, f64); 8] = [
@@ -232,6 +232,59 @@ fn starts_of_another_type_are_refused() {
     assert!(matches!(
         tighten("none", &[], &settings),
         Err(KnotError::NotTightened { .. })
+    ));
+}
+
+/// A word of sixty letters at a resolution too low for it: a curve of its type or a named refusal, never another knot.
+#[test]
+fn words_of_sixty_letters_keep_their_type_or_are_refused() {
+    let table = KnotTable::builtin();
+    let mut word = [1, -2].repeat(29);
+    word.extend([1, 1]);
+    let knot = KnotEntry::of_braid(&word, &table).expect("a knot");
+    assert_eq!(knot.name, "unnamed");
+    for search_vertices in [32, 150] {
+        let hasty = TightenSettings {
+            search_vertices,
+            n_variants: 0,
+            n_kicks: 0,
+            n_kicks_a_start: 0,
+            max_steps: 2,
+            ..TightenSettings::draft()
+        };
+        match tighten_entry(&knot, &hasty) {
+            Ok(tight) => {
+                assert!(!tight.certificate.converged);
+                assert!((thickness_brute_force(&tight.curve).tau - 1.0).abs() < 1e-9);
+                knot.verify(&tight.curve).expect("the same type");
+            }
+            Err(error) => assert!(matches!(error, KnotError::NotTightened { .. }), "{error}"),
+        }
+    }
+}
+
+#[test]
+fn collinear_vertices_are_tightened_and_coincident_ones_refused() {
+    let table = KnotTable::builtin();
+    let corners = closed_braid(&[1, 1, 1]).expect("a knot").into_vertices();
+    let next = |k: usize| corners[(k + 1) % corners.len()];
+    let between = |share: f64| -> Vec<V> {
+        let pair = |(k, a): (usize, &V)| [*a, a + share * (next(k) - a)];
+        corners.iter().enumerate().flat_map(pair).collect()
+    };
+    let knot = KnotEntry::of_curve(&between(0.75), &table).expect("a trefoil");
+    let quick = TightenSettings {
+        n_variants: 0,
+        n_kicks: 0,
+        ..TightenSettings::draft()
+    };
+    let tight = tighten_entry(&knot, &quick).expect("tight");
+    assert_eq!(tight.name, "3_1");
+    let excess = tight.length_over_radius / knot.length_over_radius.expect("published") - 1.0;
+    assert!(excess.abs() < 0.006, "{excess}");
+    assert!(matches!(
+        KnotEntry::of_curve(&between(0.0), &table),
+        Err(KnotError::Curve(_))
     ));
 }
 
