@@ -232,9 +232,9 @@ const CHARGE_SECONDS: f64 = 0.2;
 /// The same of a discharge.
 const DISCHARGE_SECONDS: f64 = 0.6;
 /// Growth with the number of edges.
-const EDGES_POWER: f64 = 1.5;
+const EDGES_POWER: f64 = 1.65;
 /// Growth with the inverse of the tolerance.
-const TOLERANCE_POWER: f64 = 0.5;
+const TOLERANCE_POWER: f64 = 0.6;
 /// Near-tied cuts of a case, on average over the published sweep.
 const MEAN_NEAR_TIES: f64 = 4.5;
 /// Bytes that a case holds at N = 200.
