@@ -189,10 +189,18 @@ fn rates(
             sweep.rows.iter().filter_map(rate).collect()
         })
         .collect();
+    let size = [160.0, 166.0];
+    let label_at = |k: usize| 16.0 + 12.0 * k as f64;
     let range = log_bounds(series.iter().flatten().map(|p| p.1), 1.35);
+    // Room for the labels above what lies in the left third.
+    let third = sweep.rows[0].q + (sweep.rows[sweep.rows.len() - 1].q - sweep.rows[0].q) / 3;
+    let below = 1.0 - label_at(shown.len()) / size[1];
+    let left_points = series.iter().flatten().filter(|p| p.0 <= f64::from(third));
+    let needed = left_points.map(|p| range.0 * (p.1 / range.0).powf(1.0 / below));
+    let range = (range.0, needed.fold(range.1, f64::max));
     let panel = Panel {
         at: [left, 214.0],
-        size: [160.0, 166.0],
+        size,
         x: winding_axis(sweep),
         y: Axis::log("Rate *R*^{2}/Γ*Lt*", range),
     };
@@ -211,7 +219,7 @@ fn rates(
     panel.draw(canvas, plots, &[]);
     mark_onset(sweep, canvas, &panel);
     for (k, (label, color, _)) in shown.iter().enumerate() {
-        let y = panel.at[1] + 16.0 + 12.0 * k as f64;
+        let y = panel.at[1] + label_at(k);
         let style = Style::default().bold().halo().size(9.5).color(color);
         canvas.text(panel.at[0] + 8.0, y, label, style);
     }
