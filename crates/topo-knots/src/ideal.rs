@@ -43,12 +43,12 @@ pub fn ideal(
     Ok(tight)
 }
 
-/// File that holds the tight shape of `entry` under `settings`.
 /// Whether [`ideal`] would find the shape in the folder `cache`.
 pub fn is_kept(entry: &KnotEntry, settings: &TightenSettings, cache: &Path) -> bool {
     cache_path(cache, entry, settings).exists()
 }
 
+/// File that holds the tight shape of `entry` under `settings`.
 fn cache_path(folder: &Path, entry: &KnotEntry, settings: &TightenSettings) -> PathBuf {
     // The debug text of a number reads back to the bit, so nothing that matters is lost.
     let key = format!("{METHOD_VERSION}\n{entry:?}\n{settings:?}");

@@ -305,12 +305,17 @@ fn refine(
         reach: if is_near { NEAR_REACH } else { LOOSE_REACH },
         max_steps: settings.max_steps,
     };
-    let mut start = curve.resampled(n)?;
-    if is_near {
-        // The spline sharpens some vertices so much that the whole curve would have to grow.
-        start = start.smoothed(2)?;
-    }
+    let start = if is_near {
+        refined(curve, n)?
+    } else {
+        curve.resampled(n)?
+    };
     Ok(tighten_level(&start, &level))
+}
+
+/// A tight curve at more vertices, smoothed: the spline sharpens some so much that the whole curve would have to grow.
+fn refined(curve: &Polyline, n: usize) -> Result<Polyline, KnotError> {
+    Ok(curve.resampled(n)?.smoothed(2)?)
 }
 
 /// Refuses a curve whose invariants are not `kind`.

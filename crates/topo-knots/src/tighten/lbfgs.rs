@@ -100,9 +100,9 @@ pub(super) fn minimise(
         let curvature = dot(&s, &y);
         if curvature > 1e-10 * dot(&y, &y).sqrt() * dot(&s, &s).sqrt() {
             // Scales the preconditioner to the curvature along the last step, so that full steps mostly serve.
-            let mut inverse = y.clone();
-            objective.precondition(&mut inverse);
-            scale = curvature / dot(&y, &inverse);
+            direction.copy_from_slice(&y);
+            objective.precondition(&mut direction);
+            scale = curvature / dot(&y, &direction);
             pairs.push((s, y, 1.0 / curvature));
         }
         x.copy_from_slice(&trial);

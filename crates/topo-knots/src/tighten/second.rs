@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use topo_core::{CpuClock, Polyline};
 
 use super::augmented::settle;
-use super::{TightKnot, check_type};
+use super::{TightKnot, check_type, refined};
 use crate::{KnotError, thickness, thickness_brute_force};
 
 /// Vertices per unit of ropelength of the loosened start.
@@ -85,7 +85,6 @@ pub fn second_opinion(tight: &TightKnot) -> Result<SecondOpinion, KnotError> {
             });
         }
         n = if 3 * n > 2 * n_fine { n_fine } else { 2 * n };
-        // The spline sharpens some vertices so much that the whole curve would have to grow.
-        curve = curve.resampled(n)?.smoothed(2)?;
+        curve = refined(&curve, n)?;
     }
 }
