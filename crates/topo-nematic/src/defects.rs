@@ -4,7 +4,8 @@ use std::collections::HashMap;
 
 use serde::{Deserialize, Serialize};
 
-use crate::tensor::{Tensor5, largest_eigenvalue, matrix, order_and_director};
+use crate::directors::Directors;
+use crate::tensor::{Tensor5, matrix};
 use crate::{Faces, Grid, NematicState};
 
 /// What a plane across a defect line shows.
@@ -115,7 +116,7 @@ pub fn defect_lines(state: &NematicState) -> Vec<DefectLine> {
 struct Tracer<'a> {
     state: &'a NematicState,
     grid: &'a Grid,
-    directors: Vec<[f64; 3]>,
+    director: [Vec<f64>; 3],
     order: Vec<f64>,
     fluid: Vec<bool>,
     largest: f64,
@@ -126,23 +127,20 @@ impl<'a> Tracer<'a> {
         let grid = state.grid();
         let [nx, ny, nz] = grid.cells();
         let n = grid.n_cells();
-        let (mut directors, mut order) = (Vec::with_capacity(n), Vec::with_capacity(n));
+        let Directors {
+            order, director, ..
+        } = every_cell(state);
         let mut fluid = Vec::with_capacity(n);
         for k in 0..nz {
             for j in 0..ny {
-                for i in 0..nx {
-                    let (s, d) = order_and_director(&state.tensor(grid.index([i, j, k])));
-                    directors.push(d);
-                    order.push(s);
-                    fluid.push(state.is_fluid([i, j, k]));
-                }
+                fluid.extend((0..nx).map(state.fluid_in_row(j, k)));
             }
         }
         let largest = order.iter().copied().fold(0.0, f64::max);
         Self {
             state,
             grid,
-            directors,
+            director,
             order,
             fluid,
             largest,
@@ -193,9 +191,7 @@ impl<'a> Tracer<'a> {
         let mut reversals = 0;
         for side in 0..4 {
             let (a, b) = (corners[side], corners[(side + 1) % 4]);
-            let along: f64 = (self.directors[a].iter().zip(&self.directors[b]))
-                .map(|(x, y)| x * y)
-                .sum();
+            let along: f64 = self.director.iter().map(|d| d[a] * d[b]).sum();
             reversals += u32::from(along < 0.0);
         }
         reversals % 2 == 1
@@ -355,16 +351,23 @@ fn smoothed_numbers(values: &[f64], closed: bool) -> Vec<f64> {
 
 /// Order S (largest eigenvalue of Q) of every cell.
 pub fn order_field(state: &NematicState) -> Vec<f64> {
-    (0..state.grid().n_cells())
-        .map(|cell| largest_eigenvalue(&state.tensor(cell)))
-        .collect()
+    every_cell(state).order
 }
 
 /// Director of every cell, with n_z >= 0.
 pub fn director_field(state: &NematicState) -> Vec<[f64; 3]> {
-    (0..state.grid().n_cells())
-        .map(|cell| order_and_director(&state.tensor(cell)).1)
+    let [x, y, z] = every_cell(state).director;
+    x.into_iter()
+        .zip(y)
+        .zip(z)
+        .map(|((x, y), z)| [x, y, z])
         .collect()
+}
+
+fn every_cell(state: &NematicState) -> Directors {
+    let mut directors = Directors::default();
+    directors.find(state, 0..state.grid().n_cells());
+    directors
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@ mod anchoring;
 mod battery;
 mod boundary;
 mod defects;
+mod directors;
 mod domain;
 mod energy;
 mod error;

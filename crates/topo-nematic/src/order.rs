@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::NematicState;
-use crate::tensor::order_and_director;
+use crate::directors::Directors;
 
 /// Mean horizontal tilt of the director, by two definitions.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -37,18 +37,17 @@ pub fn order_parameter(state: &NematicState, order: f64) -> OrderParameter {
     let ([nx, ny, nz], n) = (grid.cells(), grid.n_cells());
     let q = state.q_tensor();
     let (mut tilt, mut director, mut count) = ([0.0; 2], [0.0; 2], 0.0_f64);
+    let mut directors = Directors::default();
     for k in 0..nz {
         for j in 0..ny {
-            for i in 0..nx {
-                if !state.is_fluid([i, j, k]) {
-                    continue;
-                }
-                let cell = grid.index([i, j, k]);
-                tilt[0] += q[2 * n + cell];
-                tilt[1] += q[4 * n + cell];
-                let (_, d) = order_and_director(&state.tensor(cell));
-                director[0] += d[0];
-                director[1] += d[1];
+            let start = grid.index([0, j, k]);
+            directors.find(state, start..start + nx);
+            let is_fluid = state.fluid_in_row(j, k);
+            for i in (0..nx).filter(|i| is_fluid(*i)) {
+                tilt[0] += q[2 * n + start + i];
+                tilt[1] += q[4 * n + start + i];
+                director[0] += directors.director[0][i];
+                director[1] += directors.director[1][i];
                 count += 1.0;
             }
         }
@@ -61,5 +60,27 @@ pub fn order_parameter(state: &NematicState, order: f64) -> OrderParameter {
     OrderParameter {
         tilt: tilt.map(|t| scale * t / count.max(1.0)),
         director: director.map(|d| d / count.max(1.0)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tensor::uniaxial;
+    use crate::{Faces, Grid, Particle};
+
+    #[test]
+    fn only_the_fluid_is_averaged() {
+        let grid = Grid::new([12; 3], 1.0, [Faces::Periodic; 3]).unwrap();
+        let particle = Particle::new([6.0; 3], 3.0).unwrap();
+        let tilted = [0.6, 0.0, 0.8];
+        let state = NematicState::from_fn(grid, Some(particle), |p| {
+            let inside = p.iter().map(|x| (x - 6.0).powi(2)).sum::<f64>() < 9.0;
+            uniaxial(0.5, if inside { [0.0, 1.0, 0.0] } else { tilted })
+        })
+        .unwrap();
+        let found = order_parameter(&state, 0.5);
+        assert!((found.director[0] - 0.6).abs() < 1e-12 && found.director[1].abs() < 1e-12);
+        assert!((found.magnitude() - 0.48).abs() < 1e-12, "{found:?}");
     }
 }

@@ -102,7 +102,8 @@ impl Particle {
             let d = point[axis] - self.centre[axis];
             match faces[axis] {
                 Faces::Wall => d,
-                Faces::Periodic => d - extent[axis] * (d / extent[axis]).round(),
+                Faces::Periodic if d.abs() < 0.49 * extent[axis] => d,
+                Faces::Periodic => shortest(d, extent[axis]),
             }
         })
     }
@@ -118,6 +119,12 @@ impl Particle {
         self.distance(grid, grid.centre(ijk)) < 0.0
     }
 
+    /// Whether the centre of some cell of the row (., j, k) may lie inside.
+    pub(crate) fn reaches_row(&self, grid: &Grid, j: usize, k: usize) -> bool {
+        let [_, y, z] = self.offset(grid, grid.centre([0, j, k]));
+        y * y + z * z <= self.radius * self.radius * (1.0 + 1e-9)
+    }
+
     /// Marks the cells whose centre lies inside, in the order of the grid.
     pub fn mask(&self, grid: &Grid) -> Vec<bool> {
         let [nx, ny, nz] = grid.cells();
@@ -131,6 +138,13 @@ impl Particle {
         }
         mask
     }
+}
+
+/// The shortest of the distances d + n extent; kept out of line, as rounding is a call on the least processor and would be made for
+/// cells that need none.
+#[inline(never)]
+fn shortest(d: f64, extent: f64) -> f64 {
+    d - extent * (d / extent).round()
 }
 
 #[cfg(test)]

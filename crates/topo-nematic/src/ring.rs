@@ -79,10 +79,8 @@ fn sectors(state: &NematicState, threshold: f64) -> Option<Vec<[f64; 2]>> {
     let mut sectors = vec![[0.0_f64; 3]; N_SECTORS];
     for k in 0..nz {
         for j in 0..ny {
-            for i in 0..nx {
-                if !state.is_fluid([i, j, k]) {
-                    continue;
-                }
+            let is_fluid = state.fluid_in_row(j, k);
+            for i in (0..nx).filter(|i| is_fluid(*i)) {
                 let tensor = state.tensor(grid.index([i, j, k]));
                 if is_ordered_above(&tensor, threshold) {
                     continue;

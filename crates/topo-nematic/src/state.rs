@@ -151,4 +151,12 @@ impl NematicState {
         self.particle
             .is_none_or(|p| !p.contains_cell(&self.grid, ijk))
     }
+
+    /// [`is_fluid`](Self::is_fluid) of the cells of row (j, k), which is soon said where the particle does not reach.
+    pub(crate) fn fluid_in_row(&self, j: usize, k: usize) -> impl Fn(usize) -> bool + '_ {
+        let near = self
+            .particle
+            .filter(|particle| particle.reaches_row(&self.grid, j, k));
+        move |i| near.is_none_or(|particle| !particle.contains_cell(&self.grid, [i, j, k]))
+    }
 }

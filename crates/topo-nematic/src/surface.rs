@@ -5,7 +5,8 @@ use std::collections::HashMap;
 use serde::{Deserialize, Serialize};
 
 use crate::NematicState;
-use crate::tensor::{largest_eigenvalue, order_and_director};
+use crate::defects::order_field;
+use crate::tensor::order_and_director;
 
 /// A surface of triangles.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -36,9 +37,7 @@ pub fn isosurface(state: &NematicState, level: f64) -> TriangleMesh {
     let [nx, ny, nz] = grid.cells();
     let mut mesh = TriangleMesh::default();
     let mut vertices: HashMap<(usize, usize), u32> = HashMap::new();
-    let order: Vec<f64> = (0..grid.n_cells())
-        .map(|cell| largest_eigenvalue(&state.tensor(cell)))
-        .collect();
+    let order = order_field(state);
     for k in 0..nz - 1 {
         for j in 0..ny - 1 {
             for i in 0..nx - 1 {

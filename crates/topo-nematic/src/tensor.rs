@@ -138,7 +138,7 @@ pub fn largest_eigenvalue(q: &Tensor5) -> f64 {
 }
 
 /// Most steps of Newton's method for an eigenvalue.
-const NEWTON_STEPS: usize = 8;
+pub(crate) const NEWTON_STEPS: usize = 8;
 
 /// Whether the largest eigenvalue is safely above `threshold`, which costs less than the eigenvalue; where it is not, it may be either.
 pub(crate) fn is_ordered_above(q: &Tensor5, threshold: f64) -> bool {

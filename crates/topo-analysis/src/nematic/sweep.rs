@@ -229,16 +229,17 @@ fn plan(
 /// Cost of a charge with its discharge, as measured for q = 1 to 12 at radii 15, 25 and 52.5.
 fn case_cost(case: &NematicCase, battery: &NematicBattery) -> Cost {
     let cells = battery.grid().n_cells() as f64 / 1e6;
-    let winding = 0.7 + 0.05 * f64::from(case.q.min(20));
+    // Strong charges buckle, and buckled discharges take more steps, each of which a flow makes dear.
+    let q = f64::from(case.q.min(20));
     let (seconds, flow_bytes) = match &case.flow {
-        None => (STILL_SECONDS, 0),
+        None => (STILL_SECONDS * (0.7 + 0.05 * q), 0),
         Some(flow) => (
-            FLOWING_SECONDS,
+            FLOWING_SECONDS * (0.6 + 0.08 * q),
             FlowCoupling::n_bytes_estimate(battery.grid(), battery.particle().is_some(), flow),
         ),
     };
     Cost {
-        seconds: seconds * winding * cells.powf(CELLS_POWER),
+        seconds: seconds * cells.powf(CELLS_POWER),
         bytes: battery.memory().total() + flow_bytes,
     }
 }
@@ -270,7 +271,7 @@ pub(super) fn weight(scene: &NematicScene) -> Result<f64, AnalysisError> {
 /// Processor seconds of a case of a million cells without flow.
 const STILL_SECONDS: f64 = 33.0;
 /// The same with flow.
-const FLOWING_SECONDS: f64 = 64.0;
+const FLOWING_SECONDS: f64 = 130.0;
 /// Growth with the number of cells.
 const CELLS_POWER: f64 = 1.22;
 
