@@ -237,7 +237,7 @@ pub struct SystemsArgs {
     #[arg(long, value_name = "SYSTEM", value_parser = ["rod", "nematic", "knots"])]
     pub only: Vec<String>,
     /// How much is run: draft or standard.
-    #[arg(long, value_enum, default_value_t = Quality::Draft)]
+    #[arg(long, value_enum, default_value_t = Quality::Draft, hide_possible_values = true)]
     pub quality: Quality,
     #[command(flatten)]
     pub work: WorkArgs,
@@ -280,7 +280,7 @@ pub struct FuzzArgs {
 #[derive(Debug, Args)]
 pub struct CostArgs {
     /// How large the runs are: draft or standard.
-    #[arg(long, value_enum, default_value_t = Quality::Draft)]
+    #[arg(long, value_enum, default_value_t = Quality::Draft, hide_possible_values = true)]
     pub quality: Quality,
     /// Put the table into docs/cost.md.
     #[arg(long)]

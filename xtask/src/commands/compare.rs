@@ -6,14 +6,14 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// Columns and keys that tell how long or how much, not what came out.
-const DROPPED: [&str; 3] = ["cpu_seconds", "peak_bytes", "timings"];
+pub(super) const DROPPED: [&str; 3] = ["cpu_seconds", "peak_bytes", "timings"];
 /// Files about the making of the results, and pictures of them.
 const SKIPPED: [&str; 2] = ["provenance.json", "index.html"];
 /// Most differences told one by one.
 const TOLD: usize = 20;
 
 pub fn run(args: &CompareArgs) -> Result<(), XtaskError> {
-    let differences = differences(&args.first, &args.second)?;
+    let differences = differences(&args.first, &args.second, &DROPPED)?;
     for line in differences.iter().take(TOLD) {
         println!("{line}");
     }
@@ -36,8 +36,12 @@ pub fn run(args: &CompareArgs) -> Result<(), XtaskError> {
     }
 }
 
-/// A line for each file that is not the same in both folders.
-pub(super) fn differences(first: &Path, second: &Path) -> Result<Vec<String>, XtaskError> {
+/// A line for each file that is not the same in both folders, but for the columns and keys `dropped`.
+pub(super) fn differences(
+    first: &Path,
+    second: &Path,
+    dropped: &[&str],
+) -> Result<Vec<String>, XtaskError> {
     let (a, b) = (files(first)?, files(second)?);
     let mut lines = Vec::new();
     for name in a.union(&b) {
@@ -46,7 +50,8 @@ pub(super) fn differences(first: &Path, second: &Path) -> Result<Vec<String>, Xt
             (true, false) => lines.push(format!("{told}: only in {}", first.display())),
             (false, true) => lines.push(format!("{told}: only in {}", second.display())),
             _ => {
-                let (x, y) = (essence(&first.join(name))?, essence(&second.join(name))?);
+                let essence = |folder: &Path| essence(&folder.join(name), dropped);
+                let (x, y) = (essence(first)?, essence(second)?);
                 if x != y {
                     let place = x.iter().zip(&y).position(|(p, q)| p != q);
                     let line = place.map_or(x.len().min(y.len()), |k| k) + 1;
@@ -84,7 +89,7 @@ pub(super) fn files(folder: &Path) -> Result<BTreeSet<PathBuf>, XtaskError> {
 }
 
 /// Lines of a file without what may differ between two runs of the same numbers.
-fn essence(path: &Path) -> Result<Vec<String>, XtaskError> {
+fn essence(path: &Path, dropped: &[&str]) -> Result<Vec<String>, XtaskError> {
     let wrong = |reason: String| XtaskError::Table {
         path: path.to_owned(),
         reason,
@@ -95,7 +100,7 @@ fn essence(path: &Path) -> Result<Vec<String>, XtaskError> {
     })?;
     if path.extension().is_some_and(|e| e == "json") {
         let mut value = serde_json::from_str(&text).map_err(|e| wrong(e.to_string()))?;
-        drop_keys(&mut value);
+        drop_keys(&mut value, dropped);
         let text = serde_json::to_string_pretty(&value).map_err(|e| wrong(e.to_string()))?;
         return Ok(text.lines().map(str::to_owned).collect());
     }
@@ -108,7 +113,7 @@ fn essence(path: &Path) -> Result<Vec<String>, XtaskError> {
         .map_err(|e| wrong(e.to_string()))?;
     let kept: Vec<usize> = rows.first().map_or(Vec::new(), |header| {
         (0..header.len())
-            .filter(|&k| !DROPPED.contains(&&header[k]))
+            .filter(|&k| !dropped.contains(&&header[k]))
             .collect()
     });
     let line = |row: &csv::StringRecord| {
@@ -118,13 +123,13 @@ fn essence(path: &Path) -> Result<Vec<String>, XtaskError> {
     Ok(rows.iter().map(line).collect())
 }
 
-fn drop_keys(value: &mut serde_json::Value) {
+fn drop_keys(value: &mut serde_json::Value, dropped: &[&str]) {
     match value {
         serde_json::Value::Object(map) => {
-            map.retain(|key, _| !DROPPED.contains(&key.as_str()));
-            map.values_mut().for_each(drop_keys);
+            map.retain(|key, _| !dropped.contains(&key.as_str()));
+            map.values_mut().for_each(|v| drop_keys(v, dropped));
         }
-        serde_json::Value::Array(items) => items.iter_mut().for_each(drop_keys),
+        serde_json::Value::Array(items) => items.iter_mut().for_each(|v| drop_keys(v, dropped)),
         _ => {}
     }
 }
@@ -161,19 +166,23 @@ mod tests {
             folder("9", "0.25"),
             folder("9", "0.250"),
         );
-        let told = |x: &tempfile::TempDir, y: &tempfile::TempDir| differences(x.path(), y.path());
+        let told = |x: &tempfile::TempDir, y: &tempfile::TempDir| {
+            differences(x.path(), y.path(), &DROPPED)
+        };
         assert_eq!(told(&a, &b).unwrap(), Vec::<String>::new());
         assert_eq!(
             told(&a, &c).unwrap(),
             ["elastic/sweep.csv: differs from line 2 on"]
         );
+        let without_energy = differences(a.path(), c.path(), &["energy", "cpu_seconds", "timings"]);
+        assert_eq!(without_energy.unwrap(), Vec::<String>::new());
         std::fs::remove_file(b.path().join("elastic/a/run.json")).unwrap();
         let lines = told(&a, &b).unwrap();
         assert!(lines.len() == 1 && lines[0].contains("only in"));
         std::fs::write(c.path().join("elastic/a/run.json"), "{").unwrap();
         assert!(told(&a, &c).is_err());
         assert_eq!(
-            differences(a.path(), &a.path().join("nowhere"))
+            differences(a.path(), &a.path().join("nowhere"), &DROPPED)
                 .unwrap_err()
                 .exit_code(),
             2
