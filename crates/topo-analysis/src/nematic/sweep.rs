@@ -269,7 +269,7 @@ pub(super) fn weight(scene: &NematicScene) -> Result<f64, AnalysisError> {
 }
 
 /// Processor seconds of a case of a million cells without flow.
-const STILL_SECONDS: f64 = 33.0;
+const STILL_SECONDS: f64 = 25.0;
 /// The same with flow.
 const FLOWING_SECONDS: f64 = 130.0;
 /// Growth with the number of cells.
