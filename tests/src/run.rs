@@ -1,13 +1,13 @@
 //! A rod with its model, and the loop that carries it through time.
 
-use topo_core::{GAMMA_L_STABLE_SMALL, Interrupt, Ros2w, Simulation, StepControl, StopReason};
+use topo_core::{Interrupt, RosenbrockW, Simulation, StepControl, StopReason};
 use topo_rod::{
     Accuracy, ChargeSettings, CutSite, Discharge, DischargeSettings, Ends, Guards, RodBattery,
     RodModel, RodParameters, RodState, Tube,
 };
 
 /// The simulation that most tests run.
-pub type RodSimulation = Simulation<RodModel, Ros2w>;
+pub type RodSimulation = Simulation<RodModel, RosenbrockW>;
 
 /// What a rod is made of and how exactly it is followed.
 #[derive(Debug, Clone)]
@@ -45,7 +45,6 @@ impl Setup {
             tube,
             accuracy: Accuracy {
                 tolerance,
-                gamma: GAMMA_L_STABLE_SMALL,
                 ..Default::default()
             },
             ends: Ends::default(),
@@ -99,8 +98,7 @@ impl Setup {
             .and_then(|c| c.with_limits(1e-12, self.longest_step))
             .expect("a test's own step lengths")
             .with_max_trials(self.accuracy.max_steps);
-        let stepper = Ros2w::new(self.accuracy.gamma).expect("a test's own gamma");
-        Simulation::new(model, state, stepper, control)
+        Simulation::new(model, state, RosenbrockW::ros34pw2(), control)
     }
 }
 

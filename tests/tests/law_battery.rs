@@ -64,11 +64,12 @@ fn law_link_is_kept_through_a_charge() {
 
 /// dE + dissipation = work + removal: the residual of the books falls in proportion to the tolerance.
 ///
-/// A discharge passes through many releases of contact, so that its residual scatters; it is held to a multiple of the tolerance.
+/// Residuals change their sign on the way and a discharge passes through many releases of contact, so that single ones
+/// scatter: the order is that of a line through the logarithms of five, and each is held to a multiple of the tolerance.
 #[test]
 fn law_energy_books_balance_at_first_order() {
-    let tolerances = [2e-3, 1e-4, 2e-5];
-    let residuals = |tolerance: f64| {
+    let tolerances = [2e-3, 4e-4, 1e-4, 2e-5, 4e-6];
+    let residuals = tolerances.map(|tolerance| {
         let battery = battery(&start_trefoil(), twisted(60, 1.0), tolerance);
         let found = [
             charged(&battery, 0.5).record().report.ledger_residual,
@@ -77,12 +78,22 @@ fn law_energy_books_balance_at_first_order() {
         println!("tolerance {tolerance:.0e}: {found:?} charging and discharging");
         assert!(found.iter().all(|r| *r < 2.0 * tolerance));
         found
-    };
-    let [loose, middle, tight] = tolerances.map(residuals);
-    assert!(middle.iter().all(|r| *r < 1e-3));
-    let order = (loose[0] / tight[0]).ln() / (tolerances[0] / tolerances[2]).ln();
-    println!("order {order:.2}");
-    assert!(order > 0.9, "order {order:.2}");
+    });
+    for (phase, least) in [("charging", 0.9), ("discharging", 0.75)] {
+        let index = usize::from(phase == "discharging");
+        let order = slope(&tolerances.map(f64::ln), &residuals.map(|r| r[index].ln()));
+        println!("{phase}: order {order:.2}");
+        assert!(order > least, "{phase}: order {order:.2}");
+    }
+}
+
+/// Slope of the least-squares line.
+fn slope(x: &[f64], y: &[f64]) -> f64 {
+    let mean = |v: &[f64]| v.iter().sum::<f64>() / v.len() as f64;
+    let (mx, my) = (mean(x), mean(y));
+    let of =
+        |f: &dyn Fn(f64, f64) -> f64| x.iter().zip(y).map(|(a, b)| f(a - mx, b - my)).sum::<f64>();
+    of(&|a, b| a * b) / of(&|a, _| a * a)
 }
 
 fn same_energies(a: &Discharge, b: &Discharge, tolerance: f64) {
@@ -307,12 +318,12 @@ fn law_absent_terms_cost_nothing() {
         friction: None,
         ..twisted(80, 0.3)
     });
-    assert!(frictionless.work.n_mobility_factorisations <= 1 + frictionless.work.n_list_rebuilds);
+    assert_eq!(frictionless.work.n_mobility_factorisations, 1);
     assert_eq!(frictionless.ledger.dissipated_by("friction"), Some(0.0));
     assert_eq!(all.ledger.work(), 0.0, "nobody works on a closed rod");
 }
 
-/// Both integrators, which share only the model, follow the same discharge.
+/// The integrators, which share only the model, follow the same discharge.
 #[test]
 fn law_integrators_agree() {
     let run = |integrator: IntegratorKind| {
@@ -331,7 +342,10 @@ fn law_integrators_agree() {
         discharge(&battery.unwrap(), 0.2, 0.2)
     };
     let left = |d: &Discharge| d.record.samples.last().unwrap().elastic() / d.start;
-    let (implicit, explicit) = (run(IntegratorKind::Ros2w), run(IntegratorKind::Rkc2));
-    println!("left {:.5} and {:.5}", left(&implicit), left(&explicit));
-    assert!((left(&implicit) / left(&explicit) - 1.0).abs() < 5e-3);
+    let explicit = left(&run(IntegratorKind::Rkc2));
+    for kind in [IntegratorKind::Ros34pw2, IntegratorKind::Ros2w] {
+        let implicit = left(&run(kind));
+        println!("{kind:?}: left {implicit:.5}, explicit {explicit:.5}");
+        assert!((implicit / explicit - 1.0).abs() < 5e-3);
+    }
 }

@@ -112,7 +112,7 @@ fn val_friction_of_two_sliding_rods_matches_the_integral() {
                 flat[k * n + i] = velocity(i)[k];
             }
         }
-        let power = friction_form(&couplings, &flat, n);
+        let power = friction_form(&couplings, &flat, &flat, n);
         assert!(power >= 0.999 * integral * speed, "power {power}");
     }
 }

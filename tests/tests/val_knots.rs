@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use nalgebra::Matrix3;
-use topo_core::{GAMMA_L_STABLE_LARGE, Interrupt, Polyline};
+use topo_core::{Interrupt, Polyline};
 use topo_knots::{KnotTable, TightKnot, TightenSettings, V, tighten_entry};
 use topo_rod::{Accuracy, ChargeSettings, ContactParameters, Guards, RodBattery, RodParameters};
 use topo_tests::curves::trefoil;
@@ -14,7 +14,6 @@ const LENGTH: f64 = 50.0;
 /// Elastic energy of the relaxed trefoil without twist, over that of the doubly covered circle, 8π² B/L.
 fn trefoil_energy(diameter: f64, n_edges: usize) -> f64 {
     let mut setup = Setup::bare(2e-3).with_stretch_ratio(100.0);
-    setup.accuracy.gamma = GAMMA_L_STABLE_LARGE;
     setup.parameters.contact = Some(ContactParameters::default());
     setup.tube.contact_diameter = diameter;
     // strands beside each other, hardly touching

@@ -45,7 +45,7 @@ fn check_discharges(names: &[&str], n_edges: usize) {
         let run = discharge(&battery, 1.0, LONGEST);
         let (mut n_near, mut n_free) = (0, 0);
         let (mut least_near, mut least_free) = (1.0_f64, 1.0_f64);
-        for sample in run.record.samples.iter().step_by(2) {
+        for sample in &run.record.samples {
             let x = sample.state.vertices();
             let found = identify_open(x, N_CLOSURES, 1, &table).unwrap();
             assert_eq!(found.dominant(), *name, "at {}", sample.time);

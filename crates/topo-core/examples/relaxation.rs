@@ -4,8 +4,8 @@
 //! each step and takes few steps; RKC2 needs no matrix but many evaluations of the rate. Both meet the same tolerance.
 
 use topo_core::{
-    DischargeCurve, Ledger, LinearlyImplicit, Model, Polyline, Rejection, Rkc2, Ros2w, Sample,
-    Schedule, Scheduled, Simulation, SparseCholesky, SpectralBound, StepControl, Stepper,
+    DischargeCurve, Ledger, LinearlyImplicit, Model, Polyline, Rejection, Rkc2, RosenbrockW,
+    Sample, Schedule, Scheduled, Simulation, SparseCholesky, SpectralBound, StepControl, Stepper,
 };
 
 /// Beads on a line, neighbours joined by springs, each bead dragged by the bath: u' = -k K u.
@@ -159,7 +159,7 @@ fn relax<S: Stepper<Chain>>(name: &str, stepper: S) -> Result<(), Box<dyn std::e
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    relax("ROS2-W", Ros2w::default())?;
+    relax("ROS34PW2", RosenbrockW::default())?;
     relax("RKC2", Rkc2::default())?;
 
     let trefoil = |i: u32| {

@@ -98,7 +98,7 @@ impl Rejection {
 /// with safety s, growth limit g, and q the power with which the error estimate vanishes. The tolerance is the *target*, so a step
 /// is refused only when its error exceeds twice the tolerance: as the next step aims at the tolerance anyway, refusing errors
 /// barely above it would throw away good work and make the step length jitter. After a refusal by a guard the step is
-/// halved; the step after a refused one may not grow. [`dt_min`](Self::with_limits) and the limit of trial steps end every run.
+/// halved, or brought below the limit of the displacement; the step after a refused one may not grow. [`dt_min`](Self::with_limits) and the limit of trial steps end every run.
 ///
 /// # Validation
 /// `steps_follow_the_error`, `refusals_shrink_and_are_counted`
@@ -272,6 +272,15 @@ impl StepControl {
             Rejection::ErrorTooLarge { error, .. } => {
                 self.factor(*error, error_order).clamp(MAX_SHRINK, 0.9)
             }
+            // about proportional to the step; a ratio that is no number shrinks most
+            Rejection::Displacement { moved, limit, .. } => {
+                let factor = self.safety * limit / moved;
+                if factor > MAX_SHRINK {
+                    factor.min(0.9)
+                } else {
+                    MAX_SHRINK
+                }
+            }
             _ => 0.5,
         };
         self.just_rejected = true;
@@ -352,6 +361,15 @@ mod tests {
         assert_eq!(c.reject(1.0, &large, 2), Some(0.1));
         c.accept(0.1, 1e-12, 2);
         assert_eq!(c.dt(), 0.1, "no growth right after a refusal");
+        let moved = |moved| Rejection::Displacement {
+            vertex: 0,
+            moved,
+            limit: 1.0,
+        };
+        for (far, shorter) in [(2.0, 0.45), (1.01, 0.891_089), (1e9, 0.1), (f64::NAN, 0.1)] {
+            let proposed = control().reject(1.0, &moved(far), 2).unwrap();
+            assert_relative_eq!(proposed, shorter, max_relative = 1e-5);
+        }
         let guard = Rejection::Crossing { edges: (3, 9) };
         assert_eq!(c.reject(0.1, &guard, 2), Some(0.05));
         let mut counts = RejectionCounts::default();

@@ -2,13 +2,13 @@
 
 mod fire;
 mod rkc2;
-mod ros2w;
+mod rosenbrock;
 #[cfg(test)]
 pub(crate) mod testing;
 
 pub use fire::{Fire, ForceFn, Relaxation, RelaxationEnd, Relaxed};
 pub use rkc2::{Rkc2, Rkc2Stage, Rkc2Stages};
-pub use ros2w::{GAMMA_L_STABLE_LARGE, GAMMA_L_STABLE_SMALL, Ros2w};
+pub use rosenbrock::{GAMMA_L_STABLE_LARGE, GAMMA_L_STABLE_SMALL, RosenbrockW};
 
 use serde::{Deserialize, Serialize};
 
@@ -66,6 +66,12 @@ pub trait Model {
     /// Bookkeeping after a step was accepted: ledger, contact lists. It must not change what [`rate`](Self::rate) gives.
     fn accepted(&mut self, from: &Self::State, to: &Self::State, step: &[f64], dt: f64) {
         let _ = (from, to, step, dt);
+    }
+
+    /// Longest step that [`check`](Self::check) may be expected to let pass, judged by the last accepted one: steps beyond it
+    /// are not tried.
+    fn longest_step(&self) -> f64 {
+        f64::INFINITY
     }
 
     /// The energy ledger that observers see, if the model keeps one.

@@ -36,8 +36,8 @@ pub use error::{CurveError, SparseError};
 pub use file::{FileError, write_atomic, write_atomic_bytes};
 pub use integrate::{
     Counters, Fire, ForceFn, GAMMA_L_STABLE_LARGE, GAMMA_L_STABLE_SMALL, LinearlyImplicit, Model,
-    Relaxation, RelaxationEnd, Relaxed, Rkc2, Rkc2Stage, Rkc2Stages, Ros2w, SpectralBound, Stepper,
-    Trial, max_norm,
+    Relaxation, RelaxationEnd, Relaxed, Rkc2, Rkc2Stage, Rkc2Stages, RosenbrockW, SpectralBound,
+    Stepper, Trial, max_norm,
 };
 pub use ledger::{CompensatedSum, EnergyEvent, Ledger};
 pub use observe::{Observer, Sample, Schedule, Scheduled};

@@ -179,7 +179,11 @@ impl<M: Model, S: Stepper<M>> Simulation<M, S> {
             Ok(dt) => dt,
             Err(why) => return Some(StopReason::Failed { why }),
         };
-        let mut dt = self.control.dt().min(longest);
+        let mut dt = self
+            .control
+            .dt()
+            .min(longest)
+            .min(self.model.longest_step());
         loop {
             if self.interrupt.is_requested() {
                 return Some(StopReason::Interrupted);

@@ -5,7 +5,9 @@ pub(crate) mod cut;
 pub(crate) mod discharge;
 pub(crate) mod record;
 
-use topo_core::{Polyline, Rkc2, Ros2w, Sample, Scheduled, Simulation, StepControl, StopReason};
+use topo_core::{
+    Polyline, Rkc2, RosenbrockW, Sample, Scheduled, Simulation, StepControl, StopReason,
+};
 
 use crate::{Accuracy, Guards, IntegratorKind, RodError, RodModel, RodParameters, RodState, Tube};
 
@@ -84,7 +86,7 @@ impl RodBattery {
 
 /// A simulation of a rod with either integrator.
 pub(crate) enum RodSimulation {
-    Ros2w(Box<Simulation<RodModel, Ros2w>>),
+    Rosenbrock(Box<Simulation<RodModel, RosenbrockW>>),
     Rkc2(Box<Simulation<RodModel, Rkc2>>),
 }
 
@@ -92,7 +94,7 @@ pub(crate) enum RodSimulation {
 macro_rules! on_either {
     ($self:expr, $sim:ident => $body:expr) => {
         match $self {
-            RodSimulation::Ros2w($sim) => $body,
+            RodSimulation::Rosenbrock($sim) => $body,
             RodSimulation::Rkc2($sim) => $body,
         }
     };
@@ -110,17 +112,18 @@ impl RodSimulation {
             .with_limits(RodBattery::LEAST_STEP * t0, 10.0 * t0)?
             .with_max_trials(accuracy.max_steps);
         let interrupt = interrupt.clone();
-        Ok(match accuracy.integrator {
-            IntegratorKind::Ros2w => {
-                let stepper = Ros2w::new(accuracy.gamma)?;
-                Self::Ros2w(Box::new(
-                    Simulation::new(model, state, stepper, control).with_interrupt(interrupt),
-                ))
+        let rosenbrock = match accuracy.integrator {
+            IntegratorKind::Ros34pw2 => RosenbrockW::ros34pw2(),
+            IntegratorKind::Ros2w => RosenbrockW::ros2w(accuracy.gamma)?,
+            IntegratorKind::Rkc2 => {
+                let simulation = Simulation::new(model, state, Rkc2::default(), control);
+                return Ok(Self::Rkc2(Box::new(simulation.with_interrupt(interrupt))));
             }
-            IntegratorKind::Rkc2 => Self::Rkc2(Box::new(
-                Simulation::new(model, state, Rkc2::default(), control).with_interrupt(interrupt),
-            )),
-        })
+        };
+        let simulation = Simulation::new(model, state, rosenbrock, control);
+        Ok(Self::Rosenbrock(Box::new(
+            simulation.with_interrupt(interrupt),
+        )))
     }
 
     pub(crate) fn run(

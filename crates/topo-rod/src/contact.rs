@@ -2,6 +2,7 @@
 
 mod broad_phase;
 mod core;
+mod known;
 mod pairs;
 mod segments;
 mod window;
@@ -9,6 +10,7 @@ mod window;
 pub(crate) use self::core::Core;
 pub use self::core::CorePair;
 pub use broad_phase::{BroadPhase, close_pairs};
+pub(crate) use known::KnownPairs;
 pub use pairs::{ActivePair, ContactPairs};
 pub use segments::segment_distance;
 pub use window::{Window, arc_separation};

@@ -46,14 +46,14 @@ impl Friction {
     }
 }
 
-/// Power v·C v that friction takes out, for a component-major displacement or velocity of `n` vertices.
-pub fn friction_form(couplings: &[(u32, u32, f64)], v: &[f64], n: usize) -> f64 {
+/// u·C v of two component-major displacements or velocities of `n` vertices; v·C v is the power that friction takes out.
+pub fn friction_form(couplings: &[(u32, u32, f64)], u: &[f64], v: &[f64], n: usize) -> f64 {
     couplings
         .iter()
         .map(|&(i, j, c)| {
             let (i, j) = (i as usize, j as usize);
-            let square: f64 = (0..3).map(|k| (v[k * n + i] - v[k * n + j]).powi(2)).sum();
-            c * square
+            let apart = |w: &[f64], k: usize| w[k * n + i] - w[k * n + j];
+            c * (0..3).map(|k| apart(u, k) * apart(v, k)).sum::<f64>()
         })
         .sum()
 }

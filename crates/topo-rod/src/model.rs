@@ -55,11 +55,13 @@ pub struct RodModel {
     probe: Vec<f64>,
     rate_there: Vec<f64>,
     rate_change: Vec<f64>,
+    smoothed: Vec<f64>,
     stamps: Cell<u64>,
     n_evaluations: u64,
     n_term_evaluations: u64,
     n_friction_evaluations: u64,
     least_distance: f64,
+    longest_step: f64,
 }
 
 /// Energies and forces at the state evaluated last.
@@ -159,6 +161,7 @@ impl RodModel {
             probe: Vec::new(),
             rate_there: Vec::new(),
             rate_change: Vec::new(),
+            smoothed: Vec::new(),
             stiffness: Stiffness::default(),
             frozen: None,
             reuse: accuracy.reuse,
@@ -175,6 +178,7 @@ impl RodModel {
             n_term_evaluations: 0,
             n_friction_evaluations: 0,
             least_distance: f64::INFINITY,
+            longest_step: f64::INFINITY,
             terms,
         })
     }
@@ -219,7 +223,6 @@ impl RodModel {
     fn forget(&mut self) {
         self.at.stamp = None;
         self.frozen = None;
-        self.centreline.invalidate_pattern();
     }
 
     fn evaluate(&mut self, state: &RodState) -> Result<(), Rejection> {
@@ -237,8 +240,8 @@ impl RodModel {
                 what: "a collapsed edge, or a fold of a half turn",
             });
         }
-        if self.has_strands && self.pairs.update(state) {
-            self.centreline.invalidate_pattern();
+        if self.has_strands {
+            self.pairs.update(state);
         }
         let at = At {
             state,
@@ -281,7 +284,7 @@ impl RodModel {
             (rate[i], rate[n + i], rate[2 * n + i]) = (v.x, v.y, v.z);
         }
         self.centreline
-            .prepare(state.chain(), &self.pairs, self.friction)
+            .prepare(state, &self.pairs, self.friction)
             .map_err(|e| unsolvable(e, "the centreline mobility"))?;
         self.centreline
             .solve(state.chain(), &self.at.couplings, &mut rate[..3 * n]);
@@ -401,6 +404,12 @@ impl Model for RodModel {
             .unwrap_or(f64::INFINITY)
             .min(self.least_distance);
         self.remember(to);
+        let (_, moved) = largest_displacement(step, self.n_vertices);
+        self.longest_step = FORESEEN * self.guards.displacement * dt / moved.max(1e-300);
+    }
+
+    fn longest_step(&self) -> f64 {
+        self.longest_step
     }
 
     fn ledger(&self) -> Option<&Ledger> {
@@ -408,5 +417,7 @@ impl Model for RodModel {
     }
 }
 
+/// Share of the displacement limit that a step may use up at the speed of the last one.
+const FORESEEN: f64 = 0.9;
 /// Share of an edge's rotation in the error norm.
 const ROTATION_WEIGHT: f64 = 0.1;

@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 use topo_core::{SparseCholesky, SparseError};
 
-use crate::contact::ContactPairs;
+use crate::contact::{ContactPairs, KnownPairs};
 use crate::energy::Stiffness;
 use crate::viscosity::{TwistViscosity, remove_mean};
 use crate::{Chain, RodState};
@@ -13,12 +13,10 @@ use crate::{Chain, RodState};
 pub(crate) struct NewtonMatrix {
     solver: Option<SparseCholesky>,
     blocks: Vec<[usize; 9]>,
-    pairs: Vec<(u32, u32)>,
+    pairs: KnownPairs,
     couplings: Vec<(u32, u32, f64)>,
     /// Blocks (free, held) that carry a prescribed motion over to the free vertices.
     driven: Vec<(usize, usize, Matrix3<f64>)>,
-    /// Pairs in reach when the pattern was made.
-    n_active_then: usize,
     fixed: Vec<bool>,
     floating: bool,
     chain: Chain,
@@ -27,9 +25,6 @@ pub(crate) struct NewtonMatrix {
     pub n_patterns: u64,
     pub n_factorisations: u64,
 }
-
-/// Pairs a little out of reach that the pattern holds in advance, in h.
-const FORESIGHT: f64 = 0.15;
 
 impl NewtonMatrix {
     pub(crate) fn new(fixed: Vec<bool>) -> Self {
@@ -57,19 +52,10 @@ impl NewtonMatrix {
         couplings: &[(u32, u32, f64)],
     ) -> Result<(), SparseError> {
         let n = state.n_vertices();
-        let known = |list: &[(u32, u32)]| {
-            let (mut rest, mut again) = (list.iter(), list.iter());
-            let active = &mut pairs.active().iter();
-            active.all(|p| rest.any(|q| *q == (p.i, p.j)))
-                && (stiffness.further.iter()).all(|p| again.any(|q| *q == (p.0, p.1)))
-        };
-        // a pattern that has grown much too rich costs more in every factorisation than a new symbolic one; one that was as
-        // rich when it was made would be made as rich again
-        let n_active = pairs.active().len();
-        let lean = self.pairs.len() <= 2 * n_active + n || 2 * n_active >= self.n_active_then;
-        if self.solver.is_none() || !lean || !known(&self.pairs) {
-            self.build_pattern(state, pairs, &stiffness.further)?;
-            self.n_active_then = n_active;
+        let further = || stiffness.further.iter().map(|p| (p.0, p.1));
+        if self.solver.is_none() || !self.pairs.serve(n, pairs.active(), further()) {
+            self.pairs.renew(state, pairs, further());
+            self.build_pattern(state)?;
         }
         self.couplings.clear();
         self.couplings.extend_from_slice(couplings);
@@ -82,6 +68,7 @@ impl NewtonMatrix {
         let viscous = 1.0 / self.chain.rest_length();
         let identity = |c: f64| Matrix3::from_diagonal_element(c);
         self.driven.clear();
+        let known = self.pairs.list();
         let mut add = |block: usize, (a, b): (usize, usize), m: Matrix3<f64>, diagonal: bool| {
             match (self.fixed[a], self.fixed[b]) {
                 (false, false) => {}
@@ -115,7 +102,7 @@ impl NewtonMatrix {
         }
         let mut position = 0;
         for (pair, block) in pairs.active().iter().zip(&stiffness.contact) {
-            while self.pairs[position] != (pair.i, pair.j) {
+            while known[position] != (pair.i, pair.j) {
                 position += 1;
             }
             add(
@@ -127,14 +114,14 @@ impl NewtonMatrix {
         }
         let mut position = 0;
         for &(i, j, block) in &stiffness.further {
-            while self.pairs[position] != (i, j) {
+            while known[position] != (i, j) {
                 position += 1;
             }
             add(3 * n + position, (i as usize, j as usize), block * s, false);
         }
         let mut position = 0;
         for &(i, j, c) in couplings {
-            while self.pairs[position] != (i, j) {
+            while known[position] != (i, j) {
                 position += 1;
             }
             let (i, j) = (i as usize, j as usize);
@@ -157,19 +144,8 @@ impl NewtonMatrix {
         solver.factor()
     }
 
-    fn build_pattern(
-        &mut self,
-        state: &RodState,
-        pairs: &ContactPairs,
-        further: &[(u32, u32, Matrix3<f64>)],
-    ) -> Result<(), SparseError> {
+    fn build_pattern(&mut self, state: &RodState) -> Result<(), SparseError> {
         let n = state.n_vertices();
-        pairs.near(state, FORESIGHT, &mut self.pairs);
-        if !further.is_empty() {
-            self.pairs.extend(further.iter().map(|p| (p.0, p.1)));
-            self.pairs.sort_unstable();
-            self.pairs.dedup();
-        }
         let mut blocks: Vec<(usize, usize)> = (0..n).map(|i| (i, i)).collect();
         blocks.extend((0..n).map(|j| {
             if j < state.n_edges() {
@@ -183,7 +159,12 @@ impl NewtonMatrix {
             second[i] = (i, far);
         }
         blocks.extend(second);
-        blocks.extend(self.pairs.iter().map(|&(i, j)| (i as usize, j as usize)));
+        blocks.extend(
+            self.pairs
+                .list()
+                .iter()
+                .map(|&(i, j)| (i as usize, j as usize)),
+        );
         let pattern: Vec<(u32, u32)> = blocks.iter().map(|&(a, b)| (a as u32, b as u32)).collect();
         let solver = SparseCholesky::blocked(n, 3, &pattern)?;
         self.blocks.clear();

@@ -194,8 +194,10 @@ impl RodParameters {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum IntegratorKind {
-    /// Linearly implicit, two stages.
+    /// Linearly implicit, four stages, order 3.
     #[default]
+    Ros34pw2,
+    /// Linearly implicit, two stages, order 2.
     Ros2w,
     /// Stabilised explicit.
     Rkc2,
@@ -211,7 +213,7 @@ pub struct Accuracy {
     pub gamma: f64,
     /// Which integrator.
     pub integrator: IntegratorKind,
-    /// Steps that one factorised Newton matrix may serve; order two holds for any matrix.
+    /// Steps that one factorised Newton matrix may serve; the order holds for any matrix.
     pub reuse: usize,
     /// Width of the Verlet skin, in h.
     pub skin: f64,
@@ -224,7 +226,7 @@ impl Default for Accuracy {
         Self {
             tolerance: 2e-3,
             gamma: topo_core::GAMMA_L_STABLE_LARGE,
-            integrator: IntegratorKind::Ros2w,
+            integrator: IntegratorKind::default(),
             reuse: 8,
             skin: 0.5,
             max_steps: 200_000,

@@ -5,9 +5,9 @@
 
 use topo_core::{SparseCholesky, SparseError};
 
-use crate::Chain;
-use crate::contact::ContactPairs;
+use crate::contact::{ContactPairs, KnownPairs};
 use crate::friction::Friction;
+use crate::{Chain, RodState};
 
 /// Mobility of the centreline: solves [η K + η_f C] v = f for the three components at once.
 ///
@@ -17,10 +17,13 @@ pub struct CentrelineViscosity {
     solver: Option<SparseCholesky>,
     diagonal: Vec<usize>,
     next: Vec<usize>,
-    rubbing: Vec<(u32, u32, usize)>,
+    pairs: KnownPairs,
+    /// Where the matrix keeps the entry of each pair.
+    rubbing: Vec<usize>,
     fixed: Vec<bool>,
     grounded: bool,
     is_current: bool,
+    n_patterns: u64,
     n_factorisations: u64,
 }
 
@@ -32,10 +35,12 @@ impl CentrelineViscosity {
             solver: None,
             diagonal: Vec::new(),
             next: Vec::new(),
+            pairs: KnownPairs::default(),
             rubbing: Vec::new(),
             fixed,
             grounded,
             is_current: false,
+            n_patterns: 0,
             n_factorisations: 0,
         }
     }
@@ -57,23 +62,28 @@ impl CentrelineViscosity {
         self.grounded
     }
 
-    /// Forgets the pattern: the list of pairs has changed.
-    pub fn invalidate_pattern(&mut self) {
-        self.solver = None;
-        self.is_current = false;
+    /// How often a pattern was made, which without friction is once.
+    pub fn n_patterns(&self) -> u64 {
+        self.n_patterns
     }
 
-    /// Assembles and factorises the matrix at a chain. Without friction it is constant and factorised once.
+    /// Assembles and factorises the matrix at a state. Without friction it is constant and factorised once.
     pub fn prepare(
         &mut self,
-        chain: Chain,
+        state: &RodState,
         pairs: &ContactPairs,
         friction: Option<Friction>,
     ) -> Result<(), SparseError> {
-        if self.solver.is_none() {
-            self.build_pattern(chain, pairs, friction.is_some())?;
+        let chain = state.chain();
+        let (n, none) = (chain.n_vertices(), std::iter::empty);
+        let rubs = friction.is_some();
+        if self.solver.is_none() || rubs && !self.pairs.serve(n, pairs.active(), none()) {
+            if rubs {
+                self.pairs.renew(state, pairs, none());
+            }
+            self.build_pattern(chain)?;
         }
-        if self.is_current && friction.is_none() {
+        if self.is_current && !rubs {
             return Ok(());
         }
         let Some(solver) = self.solver.as_mut() else {
@@ -93,19 +103,20 @@ impl CentrelineViscosity {
             );
         }
         if let Some(friction) = friction {
-            // both lists ascend; the active pairs are a part of the candidates
-            let mut slots = self.rubbing.iter();
+            // both lists ascend; the active pairs are a part of the known ones
+            let known = self.pairs.list();
+            let mut position = 0;
             for pair in pairs.active() {
+                while known[position] != (pair.i, pair.j) {
+                    position += 1;
+                }
                 let c = friction.coefficient(pair);
-                let Some(&(_, _, slot)) = slots.find(|s| (s.0, s.1) == (pair.i, pair.j)) else {
-                    break;
-                };
                 if c > 0.0 {
                     let (a, b) = (pair.i as usize, pair.j as usize);
                     couple(
                         values,
                         &self.fixed,
-                        (self.diagonal[a], self.diagonal[b], slot),
+                        (self.diagonal[a], self.diagonal[b], self.rubbing[position]),
                         (a, b),
                         c,
                     );
@@ -125,19 +136,12 @@ impl CentrelineViscosity {
         solver.factor()
     }
 
-    fn build_pattern(
-        &mut self,
-        chain: Chain,
-        pairs: &ContactPairs,
-        rubs: bool,
-    ) -> Result<(), SparseError> {
+    fn build_pattern(&mut self, chain: Chain) -> Result<(), SparseError> {
         let n = chain.n_vertices();
         let mut pattern: Vec<(u32, u32)> = (0..chain.n_edges())
             .map(|j| (j as u32, chain.edge_end(j) as u32))
             .collect();
-        if rubs {
-            pattern.extend(pairs.candidates());
-        }
+        pattern.extend(self.pairs.list());
         let solver = SparseCholesky::new(n, &pattern)?;
         let slot = |i: usize, j: usize| solver.slot(i, j).unwrap_or_default();
         self.diagonal = (0..n).map(|i| slot(i, i)).collect();
@@ -145,14 +149,11 @@ impl CentrelineViscosity {
             .map(|j| slot(j, chain.edge_end(j)))
             .collect();
         self.rubbing.clear();
-        if rubs {
-            self.rubbing.extend(
-                pairs
-                    .candidates()
-                    .map(|(i, j)| (i, j, slot(i as usize, j as usize))),
-            );
-        }
+        let pairs = self.pairs.list().iter();
+        self.rubbing
+            .extend(pairs.map(|&(i, j)| slot(i as usize, j as usize)));
         self.solver = Some(solver);
+        self.n_patterns += 1;
         Ok(())
     }
 
@@ -215,30 +216,29 @@ pub(crate) fn remove_mean(v: &mut [f64], n: usize) {
     }
 }
 
-/// v·K v of a component-major displacement or velocity.
-pub fn centreline_form(chain: Chain, v: &[f64]) -> f64 {
+/// u·K v of two component-major displacements or velocities.
+pub fn centreline_form(chain: Chain, u: &[f64], v: &[f64]) -> f64 {
     let n = chain.n_vertices();
     let mut sum = 0.0;
     for j in 0..chain.n_edges() {
         let b = chain.edge_end(j);
-        sum += (0..3)
-            .map(|k| (v[k * n + b] - v[k * n + j]).powi(2))
-            .sum::<f64>();
+        let along = |w: &[f64], k: usize| w[k * n + b] - w[k * n + j];
+        sum += (0..3).map(|k| along(u, k) * along(v, k)).sum::<f64>();
     }
     sum / chain.rest_length()
 }
 
-/// w·M_θ w of edge rotations, with c_i the cosine of the turning angle at vertex i.
+/// u·M_θ w of edge rotations, with c_i the cosine of the turning angle at vertex i.
 ///
 /// ```math
 /// w·M_θ w = (η/2l_0) Σ_i |w_i t_i − w_{i−1} t_{i−1}|²
 /// ```
-pub fn twist_form(chain: Chain, cosine: impl Fn(usize) -> f64, w: &[f64]) -> f64 {
+pub fn twist_form(chain: Chain, cosine: impl Fn(usize) -> f64, u: &[f64], w: &[f64]) -> f64 {
     let sum: f64 = chain
         .interior()
         .map(|i| {
-            let (a, b) = (w[chain.edge_before(i)], w[i]);
-            a * a + b * b - 2.0 * cosine(i) * a * b
+            let before = chain.edge_before(i);
+            u[before] * w[before] + u[i] * w[i] - cosine(i) * (u[before] * w[i] + u[i] * w[before])
         })
         .sum();
     sum / (2.0 * chain.rest_length())

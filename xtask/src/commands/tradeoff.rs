@@ -17,7 +17,7 @@ use topo_analysis::{
 use topo_core::Interrupt;
 
 /// Changes with whatever changes the numbers of a run.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 /// Time between two writings of what is finished.
 const KEEP: Duration = Duration::from_secs(10);

@@ -82,7 +82,7 @@ pub struct AccuracyRow {
     pub cpu_seconds_reference: f64,
 }
 
-/// The reference: twice the edges, tolerance 1e-4 h, g = 1 − 1/√2, a fresh Newton matrix every step.
+/// The reference: twice the edges, tolerance 1e-4 h, a fresh Newton matrix every step.
 pub fn reference_scene(scene: &ElasticScene) -> ElasticScene {
     let mut fine = scene.clone();
     fine.rod.n_edges = 2 * scene.rod.n_edges;

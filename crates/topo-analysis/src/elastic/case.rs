@@ -18,7 +18,7 @@ use crate::timeline::Timeline;
 use crate::times::{DischargeTimes, ELASTIC_SHARES};
 
 /// Changes whenever the same scene gives other numbers than before; finished cases of another version are computed again.
-pub const RESULTS_VERSION: u32 = 3;
+pub const RESULTS_VERSION: u32 = 4;
 
 /// Elastic parts of the energy, without contact.
 pub(crate) const ELASTIC: [&str; 3] = ["bend", "twist", "stretch"];

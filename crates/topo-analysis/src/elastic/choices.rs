@@ -1,7 +1,6 @@
 //! Choices that a scene makes: numbers, names, cuts, presets.
 
 use serde::{Deserialize, Serialize};
-use topo_core::GAMMA_L_STABLE_SMALL;
 use topo_knots::TightenSettings;
 use topo_rod::Accuracy;
 
@@ -107,7 +106,7 @@ pub enum Preset {
     Standard,
     /// N = 400, tolerance 2e-4 h, near-tied cuts.
     Paper,
-    /// What others are measured against: N = 400, tolerance 1e-4 h, g = 1 − 1/√2, a new Newton matrix every step.
+    /// What others are measured against: N = 400, tolerance 1e-4 h, a new Newton matrix every step.
     Reference,
 }
 
@@ -147,11 +146,7 @@ impl Preset {
             ..Accuracy::default()
         };
         if self == Self::Reference {
-            Accuracy {
-                gamma: GAMMA_L_STABLE_SMALL,
-                reuse: 1,
-                ..usual
-            }
+            Accuracy { reuse: 1, ..usual }
         } else {
             usual
         }

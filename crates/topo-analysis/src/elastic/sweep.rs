@@ -228,13 +228,13 @@ pub(super) fn weight(scene: &ElasticScene) -> f64 {
 }
 
 /// Processor seconds of a charge at N = 200 and tolerance 1e-3 h.
-const CHARGE_SECONDS: f64 = 0.2;
+const CHARGE_SECONDS: f64 = 0.12;
 /// The same of a discharge.
-const DISCHARGE_SECONDS: f64 = 0.6;
+const DISCHARGE_SECONDS: f64 = 0.49;
 /// Growth with the number of edges.
 const EDGES_POWER: f64 = 1.65;
 /// Growth with the inverse of the tolerance.
-const TOLERANCE_POWER: f64 = 0.6;
+const TOLERANCE_POWER: f64 = 0.25;
 /// Near-tied cuts of a case, on average over the published sweep.
 const MEAN_NEAR_TIES: f64 = 4.5;
 /// Bytes that a case holds at N = 200.

@@ -104,24 +104,34 @@ fn settings(effort: Effort) -> Vec<(&'static str, String, ElasticScene)> {
         all.push(("resolution", resolution(n_edges, tolerance), scene));
     }
     let (n, tolerance) = (MIDDLE_EDGES, MIDDLE_TOLERANCE);
-    for (name, gamma, reuse) in [
+    for (name, integrator, gamma, reuse) in [
         (
-            "ROS2-W, g = 1 + 1/√2, new matrix each step",
+            "ROS34PW2, new matrix each step",
+            IntegratorKind::Ros34pw2,
             GAMMA_L_STABLE_LARGE,
             1,
         ),
         (
-            "ROS2-W, g = 1 − 1/√2, new matrix each step",
-            GAMMA_L_STABLE_SMALL,
-            1,
+            "ROS2-W, g = 1 + 1/√2, matrix for 8 steps",
+            IntegratorKind::Ros2w,
+            GAMMA_L_STABLE_LARGE,
+            8,
         ),
         (
             "ROS2-W, g = 1 − 1/√2, matrix for 8 steps",
+            IntegratorKind::Ros2w,
             GAMMA_L_STABLE_SMALL,
             8,
         ),
+        (
+            "ROS2-W, g = 1 − 1/√2, new matrix each step",
+            IntegratorKind::Ros2w,
+            GAMMA_L_STABLE_SMALL,
+            1,
+        ),
     ] {
         let scene = with(n, tolerance, |scene| {
+            scene.accuracy.integrator = integrator;
             (scene.accuracy.gamma, scene.accuracy.reuse) = (gamma, reuse);
         });
         all.push(("integrator", name.to_owned(), scene));

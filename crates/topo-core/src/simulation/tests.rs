@@ -1,7 +1,7 @@
 //! Tests of the loop on a decay whose every number is known.
 
 use super::*;
-use crate::integrate::{LinearlyImplicit, Ros2w};
+use crate::integrate::{GAMMA_L_STABLE_LARGE, LinearlyImplicit, RosenbrockW};
 use crate::observe::Schedule;
 
 /// u' = -u with energy u^2/2, and ways to misbehave.
@@ -12,6 +12,7 @@ struct Decay {
     forbidden_below: f64,
     fatal_after: Option<f64>,
     longest_allowed: Option<f64>,
+    foresees: bool,
     moved: f64,
 }
 
@@ -52,6 +53,10 @@ impl Model for Decay {
         }
         assert_eq!(from[0] + step[0], to[0]);
     }
+    fn longest_step(&self) -> f64 {
+        let limit = self.longest_allowed.filter(|_| self.foresees);
+        limit.unwrap_or(f64::INFINITY)
+    }
     fn ledger(&self) -> Option<&Ledger> {
         self.ledger.as_ref()
     }
@@ -68,9 +73,14 @@ impl LinearlyImplicit for Decay {
     }
 }
 
-fn simulation(model: Decay, tolerance: f64) -> Simulation<Decay, Ros2w> {
+fn simulation(model: Decay, tolerance: f64) -> Simulation<Decay, RosenbrockW> {
     let control = StepControl::new(tolerance, 1e-2).unwrap();
-    Simulation::new(model, vec![1.0], Ros2w::default(), control)
+    Simulation::new(
+        model,
+        vec![1.0],
+        RosenbrockW::ros2w(GAMMA_L_STABLE_LARGE).unwrap(),
+        control,
+    )
 }
 
 fn never(_: &Sample<'_, Vec<f64>>) -> Option<String> {
@@ -101,6 +111,23 @@ fn decays_as_it_should() {
         coarse < 5e-3 && fine < 5e-5 && fine < 0.1 * coarse,
         "{coarse:e} {fine:e}"
     );
+}
+
+#[test]
+fn steps_that_the_guards_would_refuse_are_not_tried() {
+    let refused = |foresees: bool| {
+        let model = Decay {
+            longest_allowed: Some(0.02),
+            foresees,
+            ..Decay::default()
+        };
+        let mut run = simulation(model, 1e-3);
+        assert_eq!(run.run(1.0, &mut [], &mut never), StopReason::ReachedTime);
+        assert!(run.n_steps() >= 50);
+        run.rejections().count("displacement")
+    };
+    assert!(refused(false) > 5);
+    assert_eq!(refused(true), 0);
 }
 
 #[test]

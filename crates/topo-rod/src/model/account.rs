@@ -1,7 +1,7 @@
 //! What the model books: energy by term, dissipation by channel, work of the ends, and its own work by component.
 
 use nalgebra::Vector3;
-use topo_core::{Ledger, Rejection};
+use topo_core::{Ledger, LinearlyImplicit, Rejection};
 
 use super::{CHANNELS, RodModel};
 use crate::RodState;
@@ -20,6 +20,8 @@ pub struct WorkAccount {
     pub n_list_rebuilds: u64,
     /// Factorisations of the centreline mobility.
     pub n_mobility_factorisations: u64,
+    /// Symbolic analyses of the centreline mobility.
+    pub n_mobility_patterns: u64,
     /// Factorisations of the twist mobility.
     pub n_twist_factorisations: u64,
     /// Factorisations of the Newton matrix.
@@ -114,6 +116,7 @@ impl RodModel {
             friction_bytes: couplings * size_of::<(u32, u32, f64)>(),
             n_list_rebuilds: self.pairs.n_rebuilds(),
             n_mobility_factorisations: self.centreline.n_factorisations(),
+            n_mobility_patterns: self.centreline.n_patterns(),
             n_twist_factorisations: mobility + newton,
             n_newton_factorisations: self.newton.n_factorisations,
             n_newton_patterns: self.newton.n_patterns,
@@ -196,63 +199,84 @@ impl RodModel {
 
     /// Energy that viscosity and friction take over a step.
     ///
-    /// With the secant velocity alone, D = δ·M δ/dt, a mode that decays as e^(−λt) is booked short by (λ dt)²/12. The change of
-    /// the rate over the step, a, tells λ dt = z by z² = a·M a dt²/δ·M δ, and D grows by the exact factor (z/2) coth(z/2).
+    /// A mode that decays as e^(−λt) dissipates its secant form δ·M δ/dt times φ(z) = (z/2) coth(z/2), z = λ dt, and the rate
+    /// changes over the step by a dt = −λ δ. Modes of all λ are summed by a fraction in W = 1 + g Z, Z = dt M⁻¹H, that has
+    /// the limits of φ − 1 for slow modes, z²/12, and for fast ones, z/2:
+    ///
+    /// ```math
+    /// D dt = δ·M δ + \tfrac{dt^4}{12}\,[6 g\, a·M W⁻¹a + (1 − 6 g)\, (W⁻¹a)·M W⁻¹a]
+    /// ```
+    ///
+    /// As φ is concave in z², one mode with the mean z² dissipates at least as much as all: that bound is used without W.
     pub(super) fn dissipate(&mut self, from: &RodState, to: &RodState, step: &[f64], dt: f64) {
-        let n = self.n_vertices;
         let mut rate = std::mem::take(&mut self.rate_there);
         rate.resize(step.len(), 0.0);
         let solved = self.solve_rate(to, &mut rate).is_ok();
-        let known = solved && self.accepted.rate_stamp == Some(from.stamp());
-        self.rate_change.clear();
-        self.rate_change.extend(
-            rate.iter()
-                .zip(&self.accepted.rate)
-                .map(|(new, old)| (new - old) * dt),
-        );
-        let change = |slow: f64, fast: f64| {
-            if known && slow > 0.0 {
-                relaxation_factor((fast / slow).sqrt())
-            } else {
-                1.0
-            }
-        };
-        let chain = from.chain();
-        let centreline = |v: &[f64]| {
-            let rubbed = friction_form(&self.accepted.couplings, v, n)
-                + friction_form(&self.at.couplings, v, n);
-            (centreline_form(chain, v), 0.5 * rubbed)
-        };
-        let (slow, fast) = (
-            centreline(step),
-            if known {
-                centreline(&self.rate_change)
-            } else {
-                (0.0, 0.0)
-            },
-        );
-        let factor = change(slow.0 + slow.1, fast.0 + fast.1) / dt;
-        let (old, new) = (&self.accepted.cosine, &self.at.geometry.cosine);
-        let twist = |w: &[f64]| twist_form(chain, |i| 0.5 * (old[i] + new[i]), w);
-        let twisted = self.twist.map(|_| {
-            let slow = twist(&step[3 * n..]);
-            slow * change(
-                slow,
-                if known {
-                    twist(&self.rate_change[3 * n..])
-                } else {
-                    0.0
-                },
-            ) / dt
-        });
-        self.ledger.dissipate(0, slow.0 * factor);
-        self.ledger.dissipate(2, slow.1 * factor);
-        if let Some(energy) = twisted {
-            self.ledger.dissipate(1, energy);
+        if solved && self.accepted.rate_stamp == Some(from.stamp()) {
+            self.rate_change.clear();
+            let change = rate.iter().zip(&self.accepted.rate);
+            self.rate_change
+                .extend(change.map(|(new, old)| (new - old) * dt));
+        } else {
+            self.rate_change.clear();
+            self.rate_change.resize(step.len(), 0.0);
         }
+        let mut smoothed = std::mem::take(&mut self.smoothed);
+        smoothed.clone_from(&self.rate_change);
+        let g = self.resolvent_of(dt, &mut smoothed);
+        let a = &self.rate_change;
+        let (n, chain) = (self.n_vertices, from.chain());
+        let rubbed = |u: &[f64], v: &[f64]| {
+            let (old, new) = (&self.accepted.couplings, &self.at.couplings);
+            0.5 * (friction_form(old, u, v, n) + friction_form(new, u, v, n))
+        };
+        let centreline = |u: &[f64], v: &[f64]| centreline_form(chain, u, v) + rubbed(u, v);
+        let friction = rubbed(step, step);
+        let slow = centreline_form(chain, step, step) + friction;
+        let factor = 1.0 + excess(slow, g, a, &smoothed, centreline);
+        self.ledger.dissipate(0, (slow - friction) * factor / dt);
+        self.ledger.dissipate(2, friction * factor / dt);
+        if self.twist.is_some() {
+            let (old, new) = (&self.accepted.cosine, &self.at.geometry.cosine);
+            let cosine = |i: usize| 0.5 * (old[i] + new[i]);
+            let twist = |u: &[f64], v: &[f64]| twist_form(chain, cosine, u, v);
+            let turned = 3 * n..;
+            let slow = twist(&step[turned.clone()], &step[turned.clone()]);
+            let factor = 1.0 + excess(slow, g, &a[turned.clone()], &smoothed[turned], twist);
+            self.ledger.dissipate(1, slow * factor / dt);
+        }
+        self.smoothed = smoothed;
         self.rate_there = std::mem::replace(&mut self.accepted.rate, rate);
         self.accepted.rate_stamp = solved.then(|| to.stamp());
     }
+
+    /// a ← W⁻¹ a with the Newton matrix of the step, W = 1 + g Z; gives g, or `None` where there is no use of it.
+    fn resolvent_of(&mut self, dt: f64, a: &mut [f64]) -> Option<f64> {
+        let g = self.frozen.as_ref()?.g_dt() / dt;
+        (g <= COARSEST_RESOLVENT && self.solve(a).is_ok()).then_some(g)
+    }
+}
+
+/// Largest g whose fraction is nearer to φ than the bound is.
+const COARSEST_RESOLVENT: f64 = 1.0;
+
+/// φ − 1 in the mean over the modes of a step with the secant form `slow`.
+fn excess(
+    slow: f64,
+    g: Option<f64>,
+    a: &[f64],
+    smoothed: &[f64],
+    form: impl Fn(&[f64], &[f64]) -> f64,
+) -> f64 {
+    if slow <= 0.0 {
+        return 0.0;
+    }
+    let bound = relaxation_factor((form(a, a) / slow).sqrt()) - 1.0;
+    let Some(g) = g else {
+        return bound;
+    };
+    let sum = 6.0 * g * form(a, smoothed) + (1.0 - 6.0 * g) * form(smoothed, smoothed);
+    (sum / (12.0 * slow)).clamp(0.0, bound)
 }
 
 /// (z/2) coth(z/2): mean square of a velocity that decays by e^(−z) over a step, over the square of its mean.

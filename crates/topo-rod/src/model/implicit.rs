@@ -12,10 +12,16 @@ pub(super) struct Frozen {
     n_uses: usize,
 }
 
+impl Frozen {
+    pub(super) fn g_dt(&self) -> f64 {
+        self.g_dt
+    }
+}
+
 impl LinearlyImplicit for RodModel {
     fn prepare(&mut self, state: &RodState, g_dt: f64) -> Result<(), Rejection> {
         self.expected.look_out(state.stamp());
-        // order two holds for any matrix, so one may serve several steps of about its length
+        // the order holds for any matrix, so one may serve several steps of about its length
         if let Some(frozen) = self.frozen.as_mut() {
             let ratio = g_dt / frozen.g_dt;
             if frozen.n_uses < self.reuse

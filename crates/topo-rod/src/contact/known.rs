@@ -1,0 +1,61 @@
+//! Which pairs the pattern of a matrix holds.
+
+use super::{ActivePair, ContactPairs};
+use crate::RodState;
+
+/// The pairs of a sparse pattern, ascending: kept as long as all pairs in reach are among them and they are not many more.
+#[derive(Debug, Default)]
+pub(crate) struct KnownPairs {
+    pairs: Vec<(u32, u32)>,
+    /// Pairs in reach when the pattern was made.
+    n_active_then: usize,
+}
+
+/// Pairs a little out of reach that a pattern holds in advance, in h.
+const FORESIGHT: f64 = 0.15;
+
+impl KnownPairs {
+    /// The pairs held.
+    pub(crate) fn list(&self) -> &[(u32, u32)] {
+        &self.pairs
+    }
+
+    /// Whether the pattern serves `n` vertices with these pairs in reach, and with `further` ones that ascend as well.
+    ///
+    /// A pattern that has grown much too rich costs more in every factorisation than a new symbolic one; one that was as
+    /// rich when it was made would be made as rich again.
+    pub(crate) fn serve(
+        &self,
+        n: usize,
+        active: &[ActivePair],
+        further: impl Iterator<Item = (u32, u32)>,
+    ) -> bool {
+        let n_active = active.len();
+        let lean = self.pairs.len() <= 2 * n_active + n || 2 * n_active >= self.n_active_then;
+        lean && is_part(active.iter().map(|p| (p.i, p.j)), &self.pairs)
+            && is_part(further, &self.pairs)
+    }
+
+    /// Takes up the pairs in reach at `state`, those about to be, and `further` ones.
+    pub(crate) fn renew(
+        &mut self,
+        state: &RodState,
+        pairs: &ContactPairs,
+        further: impl Iterator<Item = (u32, u32)>,
+    ) {
+        pairs.near(state, FORESIGHT, &mut self.pairs);
+        let n_near = self.pairs.len();
+        self.pairs.extend(further);
+        if self.pairs.len() > n_near {
+            self.pairs.sort_unstable();
+            self.pairs.dedup();
+        }
+        self.n_active_then = pairs.active().len();
+    }
+}
+
+/// Whether each of the ascending `part` is among the ascending `whole`.
+fn is_part(mut part: impl Iterator<Item = (u32, u32)>, whole: &[(u32, u32)]) -> bool {
+    let mut rest = whole.iter();
+    part.all(|p| rest.any(|q| *q == p))
+}
