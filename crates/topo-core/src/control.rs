@@ -98,7 +98,8 @@ impl Rejection {
 /// with safety s, growth limit g, and q the power with which the error estimate vanishes. The tolerance is the *target*, so a step
 /// is refused only when its error exceeds twice the tolerance: as the next step aims at the tolerance anyway, refusing errors
 /// barely above it would throw away good work and make the step length jitter. After a refusal by a guard the step is
-/// halved, or brought below the limit of the displacement; the step after a refused one may not grow. [`dt_min`](Self::with_limits) and the limit of trial steps end every run.
+/// halved, or brought below the limit of the displacement; the step after a refused one may not grow.
+/// [`dt_min`](Self::with_limits) and the limit of trial steps end every run.
 ///
 /// # Validation
 /// `steps_follow_the_error`, `refusals_shrink_and_are_counted`

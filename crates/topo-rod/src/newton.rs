@@ -68,7 +68,6 @@ impl NewtonMatrix {
         let viscous = 1.0 / self.chain.rest_length();
         let identity = |c: f64| Matrix3::from_diagonal_element(c);
         self.driven.clear();
-        let known = self.pairs.list();
         let mut add = |block: usize, (a, b): (usize, usize), m: Matrix3<f64>, diagonal: bool| {
             match (self.fixed[a], self.fixed[b]) {
                 (false, false) => {}
@@ -100,34 +99,23 @@ impl NewtonMatrix {
         for (i, far) in second_neighbours(state) {
             add(2 * n + i, (i, far), stiffness.second[i] * s, false);
         }
-        let mut position = 0;
-        for (pair, block) in pairs.active().iter().zip(&stiffness.contact) {
-            while known[position] != (pair.i, pair.j) {
-                position += 1;
-            }
-            add(
-                3 * n + position,
-                (pair.i as usize, pair.j as usize),
-                block * s,
-                false,
-            );
+        let active = pairs.active().iter().map(|p| (p.i, p.j));
+        for ((place, pair), block) in (self.pairs.places(active))
+            .zip(pairs.active())
+            .zip(&stiffness.contact)
+        {
+            let (i, j) = (pair.i as usize, pair.j as usize);
+            add(3 * n + place, (i, j), block * s, false);
         }
-        let mut position = 0;
-        for &(i, j, block) in &stiffness.further {
-            while known[position] != (i, j) {
-                position += 1;
-            }
-            add(3 * n + position, (i as usize, j as usize), block * s, false);
+        for (place, &(i, j, block)) in self.pairs.places(further()).zip(&stiffness.further) {
+            add(3 * n + place, (i as usize, j as usize), block * s, false);
         }
-        let mut position = 0;
-        for &(i, j, c) in couplings {
-            while known[position] != (i, j) {
-                position += 1;
-            }
+        let rubbing = couplings.iter().map(|c| (c.0, c.1));
+        for (place, &(i, j, c)) in self.pairs.places(rubbing).zip(couplings) {
             let (i, j) = (i as usize, j as usize);
             add(i, (i, i), identity(c), true);
             add(j, (j, j), identity(c), true);
-            add(3 * n + position, (i, j), identity(-c), false);
+            add(3 * n + place, (i, j), identity(-c), false);
         }
         for i in 0..n {
             let grounded = if self.floating && i == 0 {

@@ -104,19 +104,15 @@ impl CentrelineViscosity {
         }
         if let Some(friction) = friction {
             // both lists ascend; the active pairs are a part of the known ones
-            let known = self.pairs.list();
-            let mut position = 0;
-            for pair in pairs.active() {
-                while known[position] != (pair.i, pair.j) {
-                    position += 1;
-                }
+            let active = pairs.active().iter().map(|p| (p.i, p.j));
+            for (place, pair) in self.pairs.places(active).zip(pairs.active()) {
                 let c = friction.coefficient(pair);
                 if c > 0.0 {
                     let (a, b) = (pair.i as usize, pair.j as usize);
                     couple(
                         values,
                         &self.fixed,
-                        (self.diagonal[a], self.diagonal[b], self.rubbing[position]),
+                        (self.diagonal[a], self.diagonal[b], self.rubbing[place]),
                         (a, b),
                         c,
                     );

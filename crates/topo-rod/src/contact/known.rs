@@ -20,6 +20,20 @@ impl KnownPairs {
         &self.pairs
     }
 
+    /// Places in the list of pairs that are all in it and ascend as it does.
+    pub(crate) fn places<'a>(
+        &'a self,
+        part: impl Iterator<Item = (u32, u32)> + 'a,
+    ) -> impl Iterator<Item = usize> + 'a {
+        let mut place = 0;
+        part.map(move |pair| {
+            while self.pairs[place] != pair {
+                place += 1;
+            }
+            place
+        })
+    }
+
     /// Whether the pattern serves `n` vertices with these pairs in reach, and with `further` ones that ascend as well.
     ///
     /// A pattern that has grown much too rich costs more in every factorisation than a new symbolic one; one that was as
