@@ -173,12 +173,9 @@ fn law_threads_and_resumed_runs_give_the_same_bits() {
 
 #[test]
 fn law_interrupted_discharges_go_on_to_the_same_bits() {
-    let flow = |every| DischargeSettings {
+    let flow = DischargeSettings {
         until_released: 0.8,
-        flow: Some(FlowParameters {
-            every,
-            ..Default::default()
-        }),
+        flow: Some(FlowParameters::default()),
         ..Default::default()
     };
     let still = DischargeSettings {
@@ -186,9 +183,9 @@ fn law_interrupted_discharges_go_on_to_the_same_bits() {
         ..Default::default()
     };
     let cases = [
-        (Precision::Double, None, flow(1)),
-        (Precision::Single, None, flow(3)),
-        (Precision::Double, Some(5.0), flow(1)),
+        (Precision::Double, None, flow.clone()),
+        (Precision::Single, None, flow.clone()),
+        (Precision::Double, Some(5.0), flow),
         (Precision::Double, Some(5.0), still),
     ];
     for (precision, ramp, settings) in cases {

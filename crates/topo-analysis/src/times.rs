@@ -30,12 +30,27 @@ impl DischargeTimes {
     /// # Validation
     /// `times_of_an_exponential_are_exact`, `first_crossing_counts`.
     pub fn of(curve: &DischargeCurve, parts: &[&str], start: f64, shares: &[f64]) -> Self {
+        Self::between(curve, parts, [start, 0.0], shares)
+    }
+
+    /// As [`of`](Self::of), shares counting from an energy `start` down to that of a final state, `end`; none where nothing is
+    /// stored between them.
+    pub fn between(
+        curve: &DischargeCurve,
+        parts: &[&str],
+        [start, end]: [f64; 2],
+        shares: &[f64],
+    ) -> Self {
         let columns: Vec<&[f64]> = parts.iter().filter_map(|p| curve.series(p)).collect();
-        let energy = |i: usize| columns.iter().map(|c| c[i]).sum::<f64>();
+        let energy = |i: usize| columns.iter().map(|c| c[i]).sum::<f64>() - end;
+        let start = start - end;
         let time = curve.time();
         let times = shares
             .iter()
             .map(|share| {
+                if start <= 0.0 {
+                    return None;
+                }
                 let goal = (1.0 - share) * start;
                 let i = (0..time.len()).find(|&i| energy(i) <= goal)?;
                 if i == 0 {
@@ -94,6 +109,24 @@ mod tests {
             let found = times.at(share).unwrap();
             assert!((found.value - exact).abs() < 1e-12);
             assert!(found.error < 0.02);
+        }
+    }
+
+    #[test]
+    fn shares_count_down_to_the_final_state() {
+        let points: Vec<_> = (0..60)
+            .map(|k| (0.3 * k as f64, -38.0 + 2.0 * (-0.3 * k as f64 / 1.7).exp()))
+            .collect();
+        let between =
+            |ends| DischargeTimes::between(&curve(&points), &["bend"], ends, &ELASTIC_SHARES);
+        let times = between([-36.0, -38.0]);
+        for share in ELASTIC_SHARES {
+            let exact = -1.7 * f64::ln(1.0 - share);
+            assert!((times.at(share).unwrap().value - exact).abs() < 1e-9);
+        }
+        // Nothing is stored where the final state is the present one, or lies above it.
+        for end in [-36.0, -20.0] {
+            assert_eq!(between([-36.0, end]).at(0.5), None);
         }
     }
 

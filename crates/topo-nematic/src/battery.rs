@@ -3,6 +3,7 @@
 pub(crate) mod charge;
 mod coupled_flow;
 pub(crate) mod discharge;
+pub(crate) mod final_state;
 pub(crate) mod hooks;
 mod ramp;
 pub(crate) mod record;

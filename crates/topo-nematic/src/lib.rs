@@ -33,6 +33,7 @@ pub use anchoring::{Anchoring, DirectorTable, Plate, PlateDirector, SurfacePatte
 pub use battery::NematicBattery;
 pub use battery::charge::{ChargeSettings, ChargedNematic};
 pub use battery::discharge::{Discharge, DischargeSettings};
+pub use battery::final_state::{FinalSource, FinalState};
 pub use battery::hooks::{Phase, Progress, RunHooks};
 pub use battery::record::{ChargeReport, FlowReport, NematicSample, PhaseReport, RunRecord};
 pub use battery::switch::{SwitchSettings, SwitchTarget, SwitchedNematic};

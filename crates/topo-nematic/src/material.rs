@@ -173,6 +173,20 @@ impl Material {
         }
     }
 
+    /// Largest ratio by which the flow that a small tilt drives speeds its decay (bend, or splay where chi is negative).
+    ///
+    /// ```math
+    /// \beta = \frac{2 a^2}{\eta\,\Gamma}, \qquad a = \tfrac12 |\chi| \left(\tfrac23 + \tfrac S2\right) + \tfrac34 S
+    /// ```
+    ///
+    /// # Validation
+    /// `val_tilts_decay_at_the_rates_of_the_coupled_equations`
+    pub fn backflow(&self) -> f64 {
+        let s = self.order();
+        let a = 0.5 * self.flow_alignment.abs() * (2.0 / 3.0 + 0.5 * s) + 0.75 * s;
+        2.0 * a * a / (self.viscosity * self.rotational_mobility)
+    }
+
     /// Frank's elastic constant of the director, K = (9/2) L S².
     pub fn frank_constant(&self) -> f64 {
         4.5 * self.elastic_constant * self.order().powi(2)

@@ -74,6 +74,9 @@ pub struct NematicParameters {
     pub plates: Plate,
     /// The sides.
     pub sides: Sides,
+    /// No plates: what lies above is what lies below. Only with plates as they are by default, and periodic sides.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub periodic: bool,
     /// The material.
     pub material: Material,
     /// An external field; leave it out and none is modelled.
@@ -94,6 +97,7 @@ impl Default for NematicParameters {
             boundary: Boundary::CutLink,
             plates: Plate::default(),
             sides: Sides::Periodic,
+            periodic: false,
             material: Material::default(),
             field: None,
         }
@@ -122,6 +126,12 @@ impl NematicParameters {
         self.plates = self.plates.checked("nematic.plates")?;
         if let Sides::Walled(plate) = self.sides {
             plate.checked("nematic.sides.walled")?;
+        }
+        let has_walls = self.plates != Plate::default() || self.sides != Sides::Periodic;
+        if self.periodic && has_walls {
+            let remedy =
+                "false where plates or walled sides are given: a periodic cell has neither";
+            return Err(InvalidValue::new("nematic.periodic", 1.0, remedy).into());
         }
         if let Some(field) = &self.field {
             for e in field.vector {
@@ -165,7 +175,12 @@ impl NematicParameters {
             Some(cells) if ratio == 1.0 => cells,
             Some(cells) => cells.map(|n| 2 * ((0.5 * n as f64 * ratio).round() as usize).max(2)),
         };
-        Ok(Grid::new(cells, spacing, [sides, sides, Faces::Wall])?)
+        let plates = if self.periodic {
+            Faces::Periodic
+        } else {
+            Faces::Wall
+        };
+        Ok(Grid::new(cells, spacing, [sides, sides, plates])?)
     }
 
     /// What is unusual, though possible.

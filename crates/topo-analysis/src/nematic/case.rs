@@ -7,8 +7,8 @@ use topo_core::{
     FileError, Interrupt, StopReason, load_checkpoint, save_checkpoint, write_atomic_bytes,
 };
 use topo_nematic::{
-    ChargedNematic, Discharge, DischargeSettings, FlowCoupling, NematicAccuracy, NematicBattery,
-    NematicError, NematicState, Phase, Progress, RunHooks, Threads,
+    ChargedNematic, Discharge, DischargeSettings, FinalSource, FlowCoupling, NematicAccuracy,
+    NematicBattery, NematicError, NematicState, Phase, Progress, RunHooks, Threads,
 };
 
 use super::field::{self, FieldSnapshot};
@@ -98,6 +98,9 @@ impl CaseRun<'_> {
             return Ok(None);
         }
         let released = charged.switch(&self.scene.switch).map_err(refuse)?;
+        let end = released
+            .final_state(&mut RunHooks::new(self.interrupt).with_progress(&mut tell))
+            .map_err(refuse)?;
         let settings = DischargeSettings {
             flow: self.case.flow,
             ..self.scene.discharge.clone()
@@ -126,7 +129,9 @@ impl CaseRun<'_> {
         let mut failed: Option<AnalysisError> = None;
         let mut see =
             |s: &topo_nematic::NematicSample, state: &NematicState, flow: Option<&FlowCoupling>| {
-                let share = s.energy.total() / released.start();
+                let share = released
+                    .stored(&end)
+                    .map_or(1.0, |stored| (s.energy.total() - end.energy) / stored);
                 if failed.is_none() && kept.see(s.time, share, state, flow) {
                     let saved = self
                         .keep_field(s.time, kept.n_kept, state, flow)
@@ -173,8 +178,12 @@ impl CaseRun<'_> {
         let curve = &run.record.curve;
         let names: Vec<&str> = curve.parts().iter().map(String::as_str).collect();
         let f_charged = charged.energy().total();
-        let after = DischargeTimes::of(curve, &names, run.start, &NEMATIC_SHARES);
-        let whole = DischargeTimes::of(curve, &names, f_charged, &NEMATIC_SHARES);
+        let end = run.final_state.energy;
+        let times = |start: f64| {
+            let start = if run.stored.is_some() { start } else { end };
+            DischargeTimes::between(curve, &names, [start, end], &NEMATIC_SHARES)
+        };
+        let (after, whole) = (times(run.start), times(f_charged));
         let at = |times: &DischargeTimes, k: usize| times.at(NEMATIC_SHARES[k]).map(|t| t.value);
         let ring = charged.ring(RING_ORDER);
         let (charge, discharge) = (charged.report(), &run.record.report);
@@ -182,6 +191,7 @@ impl CaseRun<'_> {
         let mut row = NematicRow {
             f_charged,
             f_after_switch: run.start,
+            f_final: end,
             order_parameter: charged.order().magnitude(),
             ring_radius: ring.as_ref().map(|r| r.radius),
             ring_mode: ring.as_ref().map(|r| r.mode() as u32),
@@ -194,7 +204,7 @@ impl CaseRun<'_> {
             t90_charged: at(&whole, 1),
             t99_charged: at(&whole, 2),
             t999_charged: at(&whole, 3),
-            late_rate: late_rate(curve),
+            late_rate: late_rate(curve, end),
             steps: discharge.n_steps,
             evaluations: charge.n_steps + discharge.counters.n_rate_evaluations,
             stokes_updates: flow.map_or(0, |f| f.n_updates),
@@ -220,6 +230,9 @@ impl CaseRun<'_> {
                 &mut row.warnings,
                 &format!("discharge stopped: {}", discharge.stop),
             );
+        }
+        for text in final_state_warnings(run) {
+            push_warning(&mut row.warnings, &text);
         }
         if discharge.stop == StopReason::ReachedTime {
             push_warning(
@@ -270,6 +283,7 @@ impl CaseRun<'_> {
             "ring_charged": charged.ring(RING_ORDER),
             "energy_removed_by_switch": run.removed,
             "energy_after_switch": run.start,
+            "final_state": run.final_state,
             "discharge": run.record.report,
             "ledger_residual": run.record.report.ledger_residual,
             "rows": [row],
@@ -289,6 +303,36 @@ impl CaseRun<'_> {
         )?)
     }
 }
+
+/// What is to be said of the state that released energy counts down to.
+fn final_state_warnings(run: &Discharge) -> Vec<String> {
+    let mut warnings = Vec::new();
+    let end = &run.final_state;
+    match run.stored {
+        None => warnings.push("nothing is stored: there are no discharge times".to_owned()),
+        Some(stored) if stored < 0.0 => warnings.push(format!(
+            "the final state lies {:.4} L xi_N above the present one: there are no discharge times",
+            -stored
+        )),
+        Some(stored) => {
+            let last = run.record.curve.len().checked_sub(1);
+            let left = last.map_or(0.0, |i| run.record.curve.stored_total(i) - end.energy);
+            if left < -BELOW * stored {
+                warnings.push(format!(
+                    "the discharge ended {:.4} L xi_N below the state that its times count down to: it relaxed to another",
+                    -left
+                ));
+            }
+        }
+    }
+    if end.source == FinalSource::Unconverged {
+        warnings.push("the final state did not converge: its energy is an upper bound".to_owned());
+    }
+    warnings
+}
+
+/// Share of the energy stored by which a discharge may end below its final state: beyond is not rounding.
+const BELOW: f64 = 1e-3;
 
 /// Whether what a checkpoint holds is the reason why a run was refused.
 fn is_unusable_checkpoint(error: &NematicError) -> bool {
@@ -360,6 +404,7 @@ pub(super) fn told(p: &Progress) -> String {
             "charging: step {}, rms H {:.1e}{energy}",
             p.step, p.rms_field
         ),
+        Phase::FinalState => format!("final state: step {}, rms H {:.1e}", p.step, p.rms_field),
         Phase::Discharge => format!("discharging: step {}, t {:.3e}{energy}", p.step, p.time),
     }
 }

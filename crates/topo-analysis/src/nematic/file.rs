@@ -284,9 +284,11 @@ mod tests {
                 .collect::<Vec<_>>()
         };
         assert_eq!(with(&flowing), [(2, false), (5, false), (5, true)]);
-        let all = parse("[nematic]\nq = { from = 1, to = 3, n = 3 }\n[flow]\nevery = 2").unwrap();
+        let all =
+            parse("[nematic]\nq = { from = 1, to = 3, n = 3 }\n[flow]\nboundary_residual = 0.1")
+                .unwrap();
         assert_eq!(with(&all), [(1, true), (2, true), (3, true)]);
-        assert_eq!(all.flow.unwrap().every, 2);
+        assert_eq!(all.flow.unwrap().boundary_residual, 0.1);
         let plain = parse("[nematic]\npattern = \"homeotropic\"").unwrap();
         assert_eq!(with(&plain), [(0, false)]);
     }
@@ -310,8 +312,8 @@ mod tests {
                 vec!["nematic.pattern", "either"],
             ),
             (
-                "[nematic]\nq = 1\n[flow]\nevry = 2",
-                vec!["[flow]", "evry", "every"],
+                "[nematic]\nq = 1\n[flow]\nevery = 2",
+                vec!["[flow]", "every", "boundary_residual"],
             ),
             ("[nematic]\nq = 1\n[flow]\nq = 0", vec!["flow.q"]),
             (

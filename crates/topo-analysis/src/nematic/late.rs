@@ -5,19 +5,22 @@ use topo_core::DischargeCurve;
 /// The rate is read off while the energy falls by this factor to its last value.
 const WINDOW: f64 = 2.0;
 
-/// Rate −d ln F/dt at the end of a curve, by least squares over the steps in which F halved last; `None` with fewer than three.
+/// Rate −d ln(F − F_final)/dt at the end of a curve, F_final being `end`, by least squares over the steps in which F halved last; `None` with fewer than three.
 ///
 /// A tilt of the director by the slowest mode between plates a distance L_z apart decays so that F ∝ exp(−2 π² Γ L t/L_z²).
 ///
 /// # Validation
 /// `the_rate_of_an_exponential_is_found`
-pub(super) fn late_rate(curve: &DischargeCurve) -> Option<f64> {
-    let last = curve.len().checked_sub(1).map(|i| curve.stored_total(i))?;
+pub(super) fn late_rate(curve: &DischargeCurve, end: f64) -> Option<f64> {
+    let last = curve
+        .len()
+        .checked_sub(1)
+        .map(|i| curve.stored_total(i) - end)?;
     let points: Vec<(f64, f64)> = curve
         .time()
         .iter()
         .enumerate()
-        .map(|(i, t)| (*t, curve.stored_total(i)))
+        .map(|(i, t)| (*t, curve.stored_total(i) - end))
         .filter(|(_, f)| *f > 0.0 && *f <= WINDOW * last)
         .map(|(t, f)| (t, f.ln()))
         .collect();
@@ -46,9 +49,9 @@ mod tests {
             let f = 100.0 * (-9.0 * t).exp() + 0.3 * (-0.7 * t).exp();
             curve.push(t, &[0.25 * f, 0.75 * f], &[]).unwrap();
         }
-        let rate = late_rate(&curve).unwrap();
+        let rate = late_rate(&curve, 0.0).unwrap();
         assert!((rate - 0.7).abs() < 1e-9, "{rate}");
         let empty = DischargeCurve::new(["elastic"], Vec::<String>::new());
-        assert_eq!(late_rate(&empty), None);
+        assert_eq!(late_rate(&empty, 0.0), None);
     }
 }

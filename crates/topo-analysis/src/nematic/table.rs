@@ -21,6 +21,8 @@ pub struct NematicRow {
     pub f_charged: f64,
     /// Free energy just after the switch.
     pub f_after_switch: f64,
+    /// Free energy of the state of equilibrium after the switch: shares count down to it.
+    pub f_final: f64,
     /// Size of the horizontal order parameter after charging, zero below the buckling.
     pub order_parameter: f64,
     /// Mean distance of the ring from the axis.
@@ -45,7 +47,7 @@ pub struct NematicRow {
     pub t99_charged: Option<f64>,
     /// Same for 99.9 %.
     pub t999_charged: Option<f64>,
-    /// Rate −d ln F/dt at the end of the discharge.
+    /// Rate −d ln(F − F_final)/dt at the end of the discharge.
     pub late_rate: Option<f64>,
     /// Accepted steps of the discharge.
     pub steps: u64,
@@ -179,7 +181,7 @@ mod tests {
                 .lines()
                 .next()
                 .unwrap(),
-            "radius,spacing,q,boundary,precision,flow,f_charged,f_after_switch,order_parameter,ring_radius,ring_mode,ring_amplitude,t50,t90,t99,t999,t50_charged,t90_charged,t99_charged,t999_charged,late_rate,steps,evaluations,stokes_updates,stokes_iterations,cpu_seconds,peak_bytes,warnings"
+            "radius,spacing,q,boundary,precision,flow,f_charged,f_after_switch,f_final,order_parameter,ring_radius,ring_mode,ring_amplitude,t50,t90,t99,t999,t50_charged,t90_charged,t99_charged,t999_charged,late_rate,steps,evaluations,stokes_updates,stokes_iterations,cpu_seconds,peak_bytes,warnings"
         );
     }
 }

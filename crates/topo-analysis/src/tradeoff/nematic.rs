@@ -28,7 +28,7 @@ const BUCKLED: [i32; 1] = [11];
 /// Spacing at which tolerance, storage and flow are compared on their own, and the tolerance of their references.
 const MIDDLE_SPACING: f64 = 1.5;
 const FINEST_TOLERANCE: f64 = 1e-6;
-/// Tolerance at which flows are compared, and the boundary residual of their reference.
+/// Tolerance at which boundary residuals of flows are compared, and the residual of their reference.
 const FLOW_TOLERANCE: f64 = 3e-5;
 const FLOW_RESIDUAL: f64 = 1e-4;
 
@@ -84,7 +84,12 @@ impl Run {
         let run = released.discharge(&discharge, &mut RunHooks::new(interrupt))?;
         let curve = &run.record.curve;
         let names: Vec<&str> = curve.parts().iter().map(String::as_str).collect();
-        let times = DischargeTimes::of(curve, &names, run.start, &NEMATIC_SHARES);
+        let times = DischargeTimes::between(
+            curve,
+            &names,
+            [run.start, run.final_state.energy],
+            &NEMATIC_SHARES,
+        );
         let at = |share| times.at(share).map(|t| t.value);
         let bytes = charged
             .report()
@@ -198,31 +203,37 @@ pub(super) fn trials(effort: Effort) -> Vec<Trial> {
         Effort::Standard => &[2, 5, 8],
     };
     for &q in flowing {
-        let mut put = |setting, value: &str, flow: Option<(usize, f64)>| {
-            let mut run = run(q, MIDDLE_SPACING, FLOW_TOLERANCE);
-            run.flow = flow.map(|(every, boundary_residual)| FlowParameters {
-                every,
+        let mut put = |setting, value: String, tolerance: f64, residual: Option<f64>| {
+            let mut run = run(q, MIDDLE_SPACING, tolerance);
+            run.flow = residual.map(|boundary_residual| FlowParameters {
                 boundary_residual,
                 ..FlowParameters::default()
             });
             let case = format!("q = {q}, h = {MIDDLE_SPACING}, flow");
-            all.push((case, setting, value.to_owned(), run));
+            all.push((case, setting, value, run));
         };
+        let name = |tolerance: f64, residual: f64| format!("{tolerance:e}, residual {residual:e}");
         put(
             REFERENCE,
-            "every step, residual 1e-4",
-            Some((1, FLOW_RESIDUAL)),
+            name(FINEST_TOLERANCE, FLOW_RESIDUAL),
+            FINEST_TOLERANCE,
+            Some(FLOW_RESIDUAL),
         );
-        put("flow", "off", None);
-        for (value, every, residual) in [
-            ("every step, residual 1e-3", 1, 1e-3),
-            ("every step, residual 1e-2", 1, 1e-2),
-            ("every step, residual 0.1", 1, 0.1),
-            ("every 2 steps, residual 1e-2", 2, 1e-2),
-            ("every 4 steps, residual 1e-2", 4, 1e-2),
-            ("every 4 steps, residual 0.1", 4, 0.1),
+        put("flow", "off".to_owned(), FLOW_TOLERANCE, None);
+        for (tolerance, residual) in [
+            (FLOW_TOLERANCE, 1e-3),
+            (FLOW_TOLERANCE, 1e-2),
+            (FLOW_TOLERANCE, 0.1),
+            (1e-3, 1e-2),
+            (1e-4, 1e-2),
+            (1e-5, 1e-2),
         ] {
-            put("flow solver", value, Some((every, residual)));
+            put(
+                "flow solver",
+                name(tolerance, residual),
+                tolerance,
+                Some(residual),
+            );
         }
     }
     all.into_iter().map(trial).collect()

@@ -408,7 +408,7 @@ impl Kernel<f64> {
     }
 
     /// Root mean square of the molecular field of a state.
-    fn rms_field_of(&self, state: &NematicState) -> f64 {
+    pub(super) fn rms_field_of(&self, state: &NematicState) -> f64 {
         let (mut q, mut h) = (
             vec![0.0; self.array_length()],
             vec![0.0; self.array_length()],
@@ -419,7 +419,7 @@ impl Kernel<f64> {
     }
 
     /// Length of the mean horizontal tilt over active cells.
-    fn tilt(&self, q: &[f64], order: f64) -> f64 {
+    pub(super) fn tilt(&self, q: &[f64], order: f64) -> f64 {
         let mut sums = [0.0; 2];
         for (sum, c) in sums.iter_mut().zip([2, 4]) {
             let component = &q[c * self.stride..];

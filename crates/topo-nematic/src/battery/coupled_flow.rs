@@ -1,28 +1,41 @@
-//! The flow of a discharge: updated after its steps, adding to its rates.
+//! The flow of a discharge: the velocity that the director drives, as a drift of its field.
 
 use serde::{Deserialize, Serialize};
+use topo_core::Rejection;
 
 use super::record::FlowReport;
 use super::switch::SwitchedNematic;
 use crate::flow::FlowMemory;
 use crate::kernel::run::Kernel;
 use crate::real::Real;
-use crate::stabilised::{ExtraRate, Stabilised};
-use crate::{FlowCoupling, FlowParameters, NematicError};
+use crate::stabilised::{Drift, DriftMemory, Stabilised};
+use crate::{FlowCoupling, FlowParameters, NematicError, StokesError};
 
 /// The flow of a discharge and what is remembered of it.
+///
+/// After a refused step the velocity is that of the refused trial: only what [`settle`](Self::settle) kept counts.
 pub(super) struct CoupledFlow {
     pub coupling: FlowCoupling,
+    power: f64,
     max_speed: f64,
     boundary_residual: f64,
+    failure: Option<StokesError>,
 }
 
 /// What a checkpoint keeps of it.
 #[derive(Clone, Serialize, Deserialize)]
 pub(super) struct CoupledMemory {
     coupling: FlowMemory,
+    drift: Option<DriftMemory>,
     max_speed: f64,
     boundary_residual: f64,
+}
+
+impl CoupledMemory {
+    /// Whether it is one of a field of so many numbers.
+    pub fn fits(&self, length: usize) -> bool {
+        self.drift.iter().all(|drift| drift.fits(length))
+    }
 }
 
 impl CoupledFlow {
@@ -39,59 +52,62 @@ impl CoupledFlow {
         )?;
         Ok(Self {
             coupling,
+            power: 0.0,
             max_speed: 0.0,
             boundary_residual: 0.0,
+            failure: None,
         })
     }
 
-    pub fn memory(&self) -> CoupledMemory {
+    pub fn memory<T: Real>(&self, field: &Stabilised<T>) -> CoupledMemory {
         CoupledMemory {
             coupling: self.coupling.memory(),
+            drift: field.drift_memory(),
             max_speed: self.max_speed,
             boundary_residual: self.boundary_residual,
         }
     }
 
-    /// Goes on from a memory; whether it fits.
-    pub fn restore(&mut self, memory: CoupledMemory) -> bool {
-        self.max_speed = memory.max_speed;
-        self.boundary_residual = memory.boundary_residual;
-        self.coupling.restore(memory.coupling)
-    }
-
-    pub fn update<T: Real>(
+    /// Finds the velocity at the present field, or goes on from a memory.
+    ///
+    /// # Errors
+    /// Why no velocity was found.
+    pub fn begin<T: Real>(
         &mut self,
         kernel: &Kernel<T>,
         field: &mut Stabilised<T>,
+        memory: Option<CoupledMemory>,
     ) -> Result<(), NematicError> {
-        let (q, h) = field.with_molecular_field(kernel);
-        self.coupling.update(q, h)?;
-        self.remember(field);
-        Ok(())
-    }
-
-    pub fn after_step<T: Real>(
-        &mut self,
-        kernel: &Kernel<T>,
-        field: &mut Stabilised<T>,
-    ) -> Result<(), NematicError> {
-        let (q, h) = if self.coupling.is_due() {
-            field.with_molecular_field(kernel)
-        } else {
-            // Only the step is counted.
-            (&field.q[..], &field.q[..])
-        };
-        if self.coupling.after_step(q, h)? {
-            self.remember(field);
+        field.forget_earlier_drift();
+        let mut is_known = false;
+        if let Some(memory) = memory {
+            // A checkpoint of this very case fits; were it not so, the flow would start anew.
+            is_known = self.coupling.restore(memory.coupling);
+            self.max_speed = memory.max_speed;
+            self.boundary_residual = memory.boundary_residual;
+            if let Some(drift) = &memory.drift {
+                field.restore_drift(drift);
+            }
         }
+        let found = if is_known {
+            field.set_drift(kernel, &mut Present(&self.coupling))
+        } else {
+            field.set_drift(kernel, self)
+        };
+        if let (Err(_), Some(failure)) = (&found, self.failure.take()) {
+            return Err(failure.into());
+        }
+        self.settle();
         Ok(())
     }
 
-    fn remember<T: Real>(&mut self, field: &mut Stabilised<T>) {
-        field.forget_rate();
+    /// The velocity found last is that of the present field; gives the powers at the velocity before and at this one.
+    pub fn settle(&mut self) -> [f64; 2] {
+        let before = std::mem::replace(&mut self.power, self.coupling.power());
         self.max_speed = self.max_speed.max(self.coupling.max_speed());
         let residual = self.coupling.boundary_residual();
         self.boundary_residual = self.boundary_residual.max(residual);
+        [before, self.power]
     }
 
     pub fn report(&self) -> FlowReport {
@@ -104,12 +120,27 @@ impl CoupledFlow {
     }
 }
 
-impl<T: Real> ExtraRate<T> for CoupledFlow {
-    fn add_rate(&self, q: &[T], rate: &mut [T]) {
-        self.coupling.add_rate(q, rate);
+impl<T: Real> Drift<T> for CoupledFlow {
+    fn at(&mut self, q: &[T], field: &[T], drift: &mut [T]) -> Result<(), Rejection> {
+        if let Err(failure) = self.coupling.update(q, field) {
+            let what = match failure {
+                StokesError::NotConverged { .. } => "the flow solver did not converge",
+                _ => "the flow solver failed",
+            };
+            self.failure = Some(failure);
+            return Err(Rejection::Domain { what });
+        }
+        Present(&self.coupling).at(q, field, drift)
     }
 }
 
-pub(super) fn extra<T: Real>(flow: &Option<CoupledFlow>) -> Option<&dyn ExtraRate<T>> {
-    flow.as_ref().map(|f| f as &dyn ExtraRate<T>)
+/// The drift by the velocity as it is.
+struct Present<'a>(&'a FlowCoupling);
+
+impl<T: Real> Drift<T> for Present<'_> {
+    fn at(&mut self, q: &[T], _field: &[T], drift: &mut [T]) -> Result<(), Rejection> {
+        drift.fill(T::of(0.0));
+        self.0.add_rate(q, drift);
+        Ok(())
+    }
 }

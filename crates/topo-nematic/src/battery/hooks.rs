@@ -15,6 +15,8 @@ use crate::{FlowCoupling, NematicError, NematicState};
 pub enum Phase {
     /// Relaxing with the pattern on the surface.
     Charge,
+    /// Relaxing to the state that released energy counts from.
+    FinalState,
     /// After the switch.
     Discharge,
 }

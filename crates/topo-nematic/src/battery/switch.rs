@@ -1,9 +1,12 @@
 //! The release: the anchoring is switched.
 
+use std::sync::OnceLock;
+
 use serde::{Deserialize, Serialize};
 
 use super::NematicBattery;
 use super::charge::ChargedNematic;
+use super::final_state::FinalState;
 use crate::anchoring::{Anchoring, SurfacePattern};
 use crate::boundary::{FreeSurface, norm};
 use crate::domain::{STEPS, SpecialCell, neighbour};
@@ -54,6 +57,7 @@ pub struct SwitchedNematic {
     pub(crate) settings: SwitchSettings,
     pub(crate) state: NematicState,
     start: f64,
+    pub(super) final_state: OnceLock<FinalState>,
 }
 
 impl ChargedNematic {
@@ -100,6 +104,7 @@ impl ChargedNematic {
             settings,
             state,
             start,
+            final_state: OnceLock::new(),
         })
     }
 }

@@ -33,8 +33,6 @@ pub enum FlowSolver {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct FlowParameters {
-    /// Accepted steps from one update of the velocity to the next.
-    pub every: usize,
     /// Root mean square velocity left on the particle's boundary, over that without the particle.
     pub boundary_residual: f64,
     /// What drives the fluid besides the director.
@@ -50,7 +48,6 @@ pub struct FlowParameters {
 impl Default for FlowParameters {
     fn default() -> Self {
         Self {
-            every: 1,
             boundary_residual: 0.01,
             drive: Drive::default(),
             solver: FlowSolver::Auto,
@@ -104,7 +101,7 @@ pub struct FlowCounters {
 /// live on faces, Q in cells: the flow terms are a linear map from velocity to rate, and the force is its discrete adjoint. So the
 /// power that the fluid takes from the director is exactly f.u, whatever the resolution.
 ///
-/// Between updates the velocity is frozen. Memory is taken at set-up: neither [`update`](Self::update) nor
+/// The velocity is that of the last update. Memory is taken at set-up: neither [`update`](Self::update) nor
 /// [`add_rate`](Self::add_rate) allocates, and both give the same bits for any number of threads.
 ///
 /// # Validation
@@ -126,7 +123,6 @@ pub struct FlowCoupling {
     windows: Vec<Window>,
     level: Level,
     n_updates: u64,
-    n_steps: u64,
     power: f64,
     dissipation: f64,
     residual: f64,
@@ -138,7 +134,6 @@ pub(crate) struct FlowMemory {
     velocity: MacField,
     no_slip: Option<NoSlipMemory>,
     n_updates: u64,
-    n_steps: u64,
     n_solves: [u64; 2],
     n_iterations: u64,
     power: f64,
@@ -159,7 +154,6 @@ impl FlowCoupling {
     ) -> Result<Self, StokesError> {
         let alignment = finite("flow_alignment", material.flow_alignment)?;
         let viscosity = positive("viscosity", material.viscosity)?;
-        positive("flow.every", parameters.every as f64)?;
         parameters.drive.check(grid)?;
         let estimate = Self::n_bytes_estimate(grid, particle.is_some(), parameters);
         if estimate > parameters.memory_limit {
@@ -196,7 +190,6 @@ impl FlowCoupling {
             stencil,
             level: Level::new(),
             n_updates: 0,
-            n_steps: 0,
             power: 0.0,
             dissipation: 0.0,
             residual: 0.0,
@@ -214,7 +207,7 @@ impl FlowCoupling {
         } else {
             Sparse::n_bytes_estimate(grid, &parameters.sparse())
         };
-        8 * (fields * cells + 33 * plane * threads) + solver
+        8 * (fields * cells + 55 * plane * threads) + solver
     }
 
     /// Computes the velocity that `q` and the molecular field `h` drive; both component-major, 5 x n_cells.
@@ -273,7 +266,6 @@ impl FlowCoupling {
             velocity: self.velocity.clone(),
             no_slip: self.no_slip.as_ref().map(NoSlip::memory),
             n_updates: self.n_updates,
-            n_steps: self.n_steps,
             n_solves: self.solver.n_solves(),
             n_iterations: self.solver.n_iterations(),
             power: self.power,
@@ -284,7 +276,7 @@ impl FlowCoupling {
 
     /// Goes on from a memory; whether it fits this grid and particle.
     pub(crate) fn restore(&mut self, memory: FlowMemory) -> bool {
-        let counts = [memory.n_updates, memory.n_steps, memory.n_iterations];
+        let counts = [memory.n_updates, memory.n_iterations];
         let numbers = [memory.power, memory.dissipation, memory.residual];
         let fits = memory.velocity.cells() == self.velocity.cells()
             && counts
@@ -300,31 +292,12 @@ impl FlowCoupling {
         if fits {
             self.velocity = memory.velocity;
             self.n_updates = memory.n_updates;
-            self.n_steps = memory.n_steps;
             self.solver.set_counts(memory.n_solves, memory.n_iterations);
             self.power = memory.power;
             self.dissipation = memory.dissipation;
             self.residual = memory.residual;
         }
         fits
-    }
-
-    /// Counts an accepted step, and updates the velocity if its turn has come; whether it did.
-    ///
-    /// # Errors
-    /// As [`update`](Self::update).
-    pub fn after_step<T: Stored>(&mut self, q: &[T], h: &[T]) -> Result<bool, StokesError> {
-        self.n_steps += 1;
-        let due = self.n_steps.is_multiple_of(self.parameters.every as u64);
-        if due {
-            self.update(q, h)?;
-        }
-        Ok(due)
-    }
-
-    /// Whether the next accepted step brings an update.
-    pub fn is_due(&self) -> bool {
-        (self.n_steps + 1).is_multiple_of(self.parameters.every as u64)
     }
 
     /// Adds what the velocity of the last update does to `q` to `rate`; both component-major, 5 x n_cells.

@@ -6,12 +6,12 @@ use fearless_simd::{Level, Simd, SimdBase, dispatch, f64x8};
 use rayon::prelude::*;
 
 use super::rate::open;
-use super::stencil::{Ends, N_LANES, Row, Segment, Stencil, Stored, TILE, store};
+use super::stencil::{Ends, MARGIN, N_LANES, Row, Segment, Stencil, Stored, TILE, WIDE, store};
 use super::terms::{contract, six, stress};
 use crate::grid::Faces;
 use crate::stokes::MacField;
 
-/// Planes of one job: each job computes the stress of one plane more on either side.
+/// Planes of one job: each job computes the stress of as many more on either side as differences reach.
 const SLAB: usize = 12;
 
 /// Q, H and what they act through.
@@ -23,11 +23,14 @@ pub(super) struct Director<'a, T> {
     pub alignment: f64,
 }
 
-/// Stress of three successive planes, (i, j) entry after entry: the working memory of one thread.
+/// Planes that a difference takes.
+const PLANES: usize = 2 * MARGIN + 1;
+
+/// Stress of successive planes, (i, j) entry after entry: the working memory of one thread.
 ///
-/// Each row has one value more on either end, and room for whole blocks.
+/// Each row has a margin on either end, and room for whole blocks.
 pub(super) struct Window {
-    planes: [Vec<f64>; 3],
+    planes: [Vec<f64>; PLANES],
 }
 
 impl Window {
@@ -72,32 +75,18 @@ impl<T: Stored> Director<'_, T> {
     /// Forces in the planes from `first` on that `force` has room for.
     fn slab(&self, level: Level, window: &mut Window, first: usize, mut force: [&mut [f64]; 3]) {
         let s = self.stencil;
-        let (n_z, plane) = (s.cells[2], s.plane());
-        let walled = s.faces[2] == Faces::Wall;
-        let after = |k: usize| {
-            if k + 1 < n_z {
-                k + 1
-            } else if walled {
-                k
-            } else {
-                0
-            }
-        };
-        let before = if first > 0 {
-            first - 1
-        } else if walled {
-            0
-        } else {
-            n_z - 1
-        };
-        for (place, k) in [(1, before), (2, first)] {
-            let out = &mut window.planes[place];
+        let plane = s.plane();
+        let stress_at = |k: usize, offset: isize, out: &mut [f64]| {
+            let k = s.image(2, k as isize + offset);
             dispatch!(level, simd => self.stress_plane(simd, k, out));
+        };
+        for place in 1..PLANES {
+            let offset = place as isize - 1 - MARGIN as isize;
+            stress_at(first, offset, &mut window.planes[place]);
         }
         for (n, k) in (first..first + force[0].len() / plane).enumerate() {
             window.planes.rotate_left(1);
-            let next = &mut window.planes[2];
-            dispatch!(level, simd => self.stress_plane(simd, after(k), next));
+            stress_at(k, MARGIN as isize, &mut window.planes[PLANES - 1]);
             let range = n * plane..(n + 1) * plane;
             let out = force.each_mut().map(|f| &mut f[range.clone()]);
             let planes = &window.planes;
@@ -105,7 +94,7 @@ impl<T: Stored> Director<'_, T> {
         }
     }
 
-    /// The five components of a row from `start` on, with one cell more on either end.
+    /// The five components of a row from `start` on, with a margin on either end.
     #[inline(always)]
     fn tensor(&self, field: &[T], row: Row, start: usize) -> [Segment; 5] {
         let n_cells = field.len() / 5;
@@ -126,10 +115,10 @@ impl<T: Stored> Director<'_, T> {
         if let Some(weights) = self.weights {
             weight = Segment::of(self.stencil.values(weights, row), start, Ends::Wrap);
             for at in (0..TILE + N_LANES).step_by(N_LANES) {
-                let weight = weight.load(simd, at);
+                let weight = weight.load_place(simd, at);
                 for c in 0..5 {
-                    let value = h[c].load(simd, at);
-                    h[c].store(open(simd, weight, value * weight), at);
+                    let value = h[c].load_place(simd, at);
+                    h[c].store_place(open(simd, weight, value * weight), at);
                 }
             }
         }
@@ -146,34 +135,32 @@ impl<T: Stored> Director<'_, T> {
                 let q = self.tensor(self.q, row, start);
                 let (h, weight) = self.weighted(simd, row, start);
                 for at in (start..n.min(start + TILE)).step_by(N_LANES) {
-                    let i = at - start + 1;
+                    let i = at - start;
                     let zero = f64x8::splat(simd, 0.0);
                     let (mut q_here, mut h_here) = ([zero; 5], [zero; 5]);
                     for c in 0..5 {
-                        q_here[c] = q[c].load(simd, i);
-                        h_here[c] = h[c].load(simd, i);
+                        q_here[c] = q[c].load(simd, i, 0);
+                        h_here[c] = h[c].load(simd, i, 0);
                     }
                     let t = stress(q_here, h_here, self.alignment);
-                    let fluid = weight.load(simd, i);
+                    let fluid = weight.load(simd, i, 0);
                     for entry in 0..9 {
                         let mut value = t[entry / 3][entry % 3];
                         if self.weights.is_some() {
                             // Q may be anything where there is no fluid.
                             value = open(simd, fluid, value);
                         }
-                        let place = (entry * s.cells[1] + j) * width + 1 + at;
+                        let place = (entry * s.cells[1] + j) * width + MARGIN + at;
                         value.store_slice(&mut out[place..place + N_LANES]);
                     }
                 }
             }
-            let walled = s.faces[0] == Faces::Wall;
             for entry in 0..9 {
                 let row = &mut out[(entry * s.cells[1] + j) * width..][..width];
-                (row[0], row[n + 1]) = if walled {
-                    (row[1], row[n])
-                } else {
-                    (row[n], row[1])
-                };
+                for m in 0..MARGIN {
+                    row[m] = row[MARGIN + s.image(0, m as isize - MARGIN as isize)];
+                    row[MARGIN + n + m] = row[MARGIN + s.image(0, (n + m) as isize)];
+                }
             }
         }
     }
@@ -183,7 +170,7 @@ impl<T: Stored> Director<'_, T> {
         &self,
         simd: S,
         k: usize,
-        stresses: &[Vec<f64>; 3],
+        stresses: &[Vec<f64>; PLANES],
         force: [&mut [f64]; 3],
     ) {
         let s = self.stencil;
@@ -196,7 +183,7 @@ impl<T: Stored> Director<'_, T> {
                 for at in (start..n.min(start + TILE)).step_by(N_LANES) {
                     let divergence = t.divergence(simd, at, s.spacing);
                     for axis in 0..3 {
-                        let moved = advection[axis].load(simd, at - start + 1);
+                        let moved = advection[axis].load(simd, at - start, 0);
                         let row = &mut force[axis][range.clone()];
                         store(divergence[axis] - moved, row, at);
                     }
@@ -231,103 +218,92 @@ impl<T: Stored> Director<'_, T> {
                 )
             });
             let (q_before, (h_before, weight_before), shift) = match &beside {
-                Some((q, (h, weight))) => (q, (h, weight), 1),
-                None => (&q, (&h, &weight), 0),
+                Some((q, (h, weight))) => (q, (h, weight), 0),
+                None => (&q, (&h, &weight), -1),
             };
             for i in (0..TILE).step_by(N_LANES) {
                 let zero = f64x8::splat(simd, 0.0);
                 let (mut difference, mut sum) = ([zero; 5], [zero; 5]);
                 for c in 0..5 {
-                    difference[c] = q[c].load(simd, i + 1) - q_before[c].load(simd, i + shift);
-                    sum[c] = h[c].load(simd, i + 1) + h_before[c].load(simd, i + shift);
+                    difference[c] = q[c].load(simd, i, 0) - q_before[c].load(simd, i, shift);
+                    sum[c] = h[c].load(simd, i, 0) + h_before[c].load(simd, i, shift);
                 }
                 let mut value = contract(six(sum), six(difference)) * half;
                 if self.weights.is_some() {
-                    let both = weight.load(simd, i + 1) * weight_before.load(simd, i + shift);
+                    let both = weight.load(simd, i, 0) * weight_before.load(simd, i, shift);
                     value = open(simd, both, value);
                 }
-                out[axis].store(value, i + 1);
+                out[axis].store_place(value, i + MARGIN);
             }
         }
         out
     }
 }
 
-/// Rows of stress around row j, in the plane below, its own, and the one above.
+/// Rows of stress around row j, in the planes around its own.
 struct Stresses<'a> {
-    planes: &'a [Vec<f64>; 3],
-    /// Where row j starts, and the rows before and after it.
-    rows: [usize; 3],
+    planes: &'a [Vec<f64>; PLANES],
+    /// Where row j and those around it start.
+    rows: [usize; PLANES],
     /// Numbers from one entry of the tensor to the next.
     entry: usize,
 }
 
 impl<'a> Stresses<'a> {
     #[inline(always)]
-    fn new(s: &Stencil, planes: &'a [Vec<f64>; 3], j: usize) -> Self {
-        let (n_y, width) = (s.cells[1], width(s));
-        let walled = s.faces[1] == Faces::Wall;
-        let last = n_y - 1;
-        let before = if j > 0 {
-            j - 1
-        } else if walled {
-            0
-        } else {
-            last
-        };
-        let after = if j < last {
-            j + 1
-        } else if walled {
-            last
-        } else {
-            0
-        };
+    fn new(s: &Stencil, planes: &'a [Vec<f64>; PLANES], j: usize) -> Self {
+        let width = width(s);
+        let row = |place: usize| s.image(1, (j + place) as isize - MARGIN as isize) * width;
         Self {
             planes,
-            rows: [before * width, j * width, after * width],
-            entry: n_y * width,
+            rows: std::array::from_fn(row),
+            entry: s.cells[1] * width,
         }
     }
 
-    /// T_ab in the eight cells from `at` on, which is place 1 of the row: `place` counts from the row before and the plane below.
+    /// T_ab in the eight cells from `at` on, offset along x, y and z.
     #[inline(always)]
     fn at<S: Simd>(
         &self,
         simd: S,
         [a, b]: [usize; 2],
-        [row, plane]: [usize; 2],
+        [along, row, plane]: [isize; 3],
         at: usize,
     ) -> f64x8<S> {
-        let start = (3 * a + b) * self.entry + self.rows[row] + at;
-        f64x8::from_slice(simd, &self.planes[plane][start..start + N_LANES])
+        let middle = MARGIN as isize;
+        let row = self.rows[(middle + row) as usize];
+        let start = (3 * a + b) * self.entry + row + at.wrapping_add_signed(middle + along);
+        f64x8::from_slice(
+            simd,
+            &self.planes[(middle + plane) as usize][start..start + N_LANES],
+        )
     }
 
     /// -d_j T_ji on the lower faces of the eight cells from `at` on.
     #[inline(always)]
     fn divergence<S: Simd>(&self, simd: S, at: usize, spacing: f64) -> [f64x8<S>; 3] {
         let (whole, quarter) = (1.0 / spacing, 0.25 / spacing);
-        let (before, here, after) = (at, at + 1, at + 2);
-        let (xx, yy, zz) = ([0, 0], [1, 1], [2, 2]);
-        let own = [1, 1];
-        let (south, north, down, up) = ([0, 1], [2, 1], [1, 0], [1, 2]);
-        let x = (self.at(simd, xx, own, before) - self.at(simd, xx, own, here)) * whole
-            + ((self.at(simd, [1, 0], south, before) + self.at(simd, [1, 0], south, here))
-                - (self.at(simd, [1, 0], north, before) + self.at(simd, [1, 0], north, here))
-                + (self.at(simd, [2, 0], down, before) + self.at(simd, [2, 0], down, here))
-                - (self.at(simd, [2, 0], up, before) + self.at(simd, [2, 0], up, here)))
-                * quarter;
-        let y = (self.at(simd, yy, south, here) - self.at(simd, yy, own, here)) * whole
-            + ((self.at(simd, [0, 1], south, before) + self.at(simd, [0, 1], own, before))
-                - (self.at(simd, [0, 1], south, after) + self.at(simd, [0, 1], own, after))
-                + (self.at(simd, [2, 1], [0, 0], here) + self.at(simd, [2, 1], down, here))
-                - (self.at(simd, [2, 1], [0, 2], here) + self.at(simd, [2, 1], up, here)))
-                * quarter;
-        let z = (self.at(simd, zz, down, here) - self.at(simd, zz, own, here)) * whole
-            + ((self.at(simd, [0, 2], down, before) + self.at(simd, [0, 2], own, before))
-                - (self.at(simd, [0, 2], down, after) + self.at(simd, [0, 2], own, after))
-                + (self.at(simd, [1, 2], [0, 0], here) + self.at(simd, [1, 2], south, here))
-                - (self.at(simd, [1, 2], [2, 0], here) + self.at(simd, [1, 2], north, here)))
-                * quarter;
-        [x, y, z]
+        let mut force = [f64x8::splat(simd, 0.0); 3];
+        for i in 0..3 {
+            let mut before = [0; 3];
+            before[i] = -1;
+            let here = self.at(simd, [i, i], [0; 3], at);
+            force[i] = (self.at(simd, [i, i], before, at) - here) * whole;
+            for j in 0..3 {
+                if j == i {
+                    continue;
+                }
+                for (offset, factor) in WIDE {
+                    let (mut lower, mut upper) = ([0; 3], [0; 3]);
+                    (lower[j], upper[j]) = (-offset, offset);
+                    let mut sum =
+                        self.at(simd, [j, i], lower, at) - self.at(simd, [j, i], upper, at);
+                    (lower[i], upper[i]) = (-1, -1);
+                    sum += self.at(simd, [j, i], lower, at) - self.at(simd, [j, i], upper, at);
+                    force[i] += sum * (factor * quarter);
+                }
+            }
+        }
+        force
     }
 }

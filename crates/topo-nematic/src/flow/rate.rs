@@ -3,7 +3,7 @@
 use fearless_simd::{Level, Simd, SimdBase, dispatch, f64x8};
 use rayon::prelude::*;
 
-use super::stencil::{Ends, N_LANES, Segment, Stencil, Stored, TILE, load, store};
+use super::stencil::{Ends, N_LANES, Segment, Stencil, Stored, TILE, WIDE, load, store};
 use super::terms::turn_and_align;
 use crate::stokes::MacField;
 
@@ -82,10 +82,7 @@ impl Flow<'_> {
             for at in (start..end).step_by(N_LANES) {
                 let i = at - start;
                 let u = [
-                    [
-                        gradient.u_x.load(simd, i + 1),
-                        gradient.u_x.load(simd, i + 2),
-                    ],
+                    [gradient.u_x.load(simd, i, 0), gradient.u_x.load(simd, i, 1)],
                     [load(simd, rows.y[0], at), load(simd, rows.y[1], at)],
                     [load(simd, rows.z[0], at), load(simd, rows.z[1], at)],
                 ];
@@ -94,14 +91,14 @@ impl Flow<'_> {
                         let mut flux = u[axis][side] * half;
                         if let (Some(mine), Some(weights)) = (&weight, self.weights) {
                             let beside = match (axis, side) {
-                                (0, 0) => mine.load(simd, i),
-                                (0, _) => mine.load(simd, i + 2),
+                                (0, 0) => mine.load(simd, i, -1),
+                                (0, _) => mine.load(simd, i, 1),
                                 (1, 0) => load(simd, s.values(weights, south), at),
                                 (1, _) => load(simd, s.values(weights, north), at),
                                 (_, 0) => load(simd, s.values(weights, down), at),
                                 (_, _) => load(simd, s.values(weights, up), at),
                             };
-                            flux = open(simd, mine.load(simd, i + 1) * beside, flux);
+                            flux = open(simd, mine.load(simd, i, 0) * beside, flux);
                         }
                         flux.store_slice(&mut through[axis][side][i..i + N_LANES]);
                     }
@@ -120,7 +117,7 @@ impl Flow<'_> {
                 let i = at - start;
                 let mut here = [f64x8::splat(simd, 0.0); 5];
                 for c in 0..5 {
-                    here[c] = centre[c].load(simd, i + 1);
+                    here[c] = centre[c].load(simd, i, 0);
                 }
                 let w = gradient.at(simd, &rows, at, i);
                 let change = turn_and_align(here, w, self.alignment);
@@ -138,10 +135,10 @@ impl Flow<'_> {
                 for at in (start..end).step_by(N_LANES) {
                     let i = at - start;
                     let flux = |axis: usize, side: usize| &through[axis][side][i..i + N_LANES];
-                    let mid = centre[c].load(simd, i + 1);
+                    let mid = centre[c].load(simd, i, 0);
                     let advected = f64x8::from_slice(simd, flux(0, 0))
-                        * (mid - centre[c].load(simd, i))
-                        + f64x8::from_slice(simd, flux(0, 1)) * (centre[c].load(simd, i + 2) - mid)
+                        * (mid - centre[c].load(simd, i, -1))
+                        + f64x8::from_slice(simd, flux(0, 1)) * (centre[c].load(simd, i, 1) - mid)
                         + f64x8::from_slice(simd, flux(1, 0)) * (mid - load(simd, beside[0], at))
                         + f64x8::from_slice(simd, flux(1, 1)) * (load(simd, beside[1], at) - mid)
                         + f64x8::from_slice(simd, flux(2, 0)) * (mid - load(simd, beside[2], at))
@@ -149,7 +146,7 @@ impl Flow<'_> {
                     let turned = f64x8::from_slice(simd, &turned[c][i..i + N_LANES]);
                     let mut change = turned - advected;
                     if let Some(mine) = &weight {
-                        change = open(simd, mine.load(simd, i + 1), change);
+                        change = open(simd, mine.load(simd, i, 0), change);
                     }
                     store(load(simd, &*rate[c], at) + change, rate[c], at);
                 }
@@ -181,13 +178,21 @@ struct GradientRows<'a> {
     /// u_y on the lower and upper y face, and u_z on the lower and upper z face.
     y: [&'a [f64]; 2],
     z: [&'a [f64]; 2],
-    /// u_x below and above along y, and along z.
-    x_y: [Mirrored<'a>; 2],
-    x_z: [Mirrored<'a>; 2],
-    /// u_z below and above along y, each on both z faces; u_y below and above along z, each on both y faces.
-    z_y: [[Mirrored<'a>; 2]; 2],
-    y_z: [[Mirrored<'a>; 2]; 2],
+    /// u_x of the rows around along y, and along z.
+    x_y: [Mirrored<'a>; 4],
+    x_z: [Mirrored<'a>; 4],
+    /// u_z of the rows around along y, each on both z faces; u_y of those along z, each on both y faces.
+    z_y: [[Mirrored<'a>; 2]; 4],
+    y_z: [[Mirrored<'a>; 2]; 4],
 }
+
+/// Offsets of the rows that a difference takes, and their factors over twice the spacing.
+const AROUND: [(isize, f64); 4] = [
+    (-WIDE[1].0, -WIDE[1].1),
+    (-WIDE[0].0, -WIDE[0].1),
+    WIDE[0],
+    WIDE[1],
+];
 
 /// A row, and how a wall reflects it.
 type Mirrored<'a> = (&'a [f64], Option<[f64; 2]>);
@@ -196,33 +201,34 @@ impl<'a> GradientRows<'a> {
     fn new(s: &Stencil, velocity: &'a MacField, jk: [usize; 2]) -> Self {
         let u = velocity.components();
         let faces = |axis| [jk, s.step(axis, jk, true)];
-        let sides = [false, true];
-        let beside = |axis, jk, up, component: usize| {
-            let row = s.beside(axis, jk, up, component);
+        let beside = |axis, jk, offset, component: usize| {
+            let row = s.beside(axis, jk, offset, component);
             (s.values(u[component], row), row.mirror)
         };
+        let around = AROUND.map(|(offset, _)| offset);
         Self {
             u_x: s.values(u[0], s.row(jk)),
             y: faces(1).map(|jk| s.values(u[1], s.row(jk))),
             z: faces(2).map(|jk| s.values(u[2], s.row(jk))),
-            x_y: sides.map(|up| beside(1, jk, up, 0)),
-            x_z: sides.map(|up| beside(2, jk, up, 0)),
-            z_y: sides.map(|up| faces(2).map(|jk| beside(1, jk, up, 2))),
-            y_z: sides.map(|up| faces(1).map(|jk| beside(2, jk, up, 1))),
+            x_y: around.map(|d| beside(1, jk, d, 0)),
+            x_z: around.map(|d| beside(2, jk, d, 0)),
+            z_y: around.map(|d| faces(2).map(|jk| beside(1, jk, d, 2))),
+            y_z: around.map(|d| faces(1).map(|jk| beside(2, jk, d, 1))),
         }
     }
 }
 
-/// Combinations of these rows in one tile: off the diagonal, W is the mean of the four nearest differences.
+/// Combinations of these rows in one tile: off the diagonal, W is the mean over two faces of a difference of order four, as
+/// one of order two across two cells would read a wave of forty cells 0.6 % too low.
 struct GradientTile {
     u_x: Segment,
     /// u_y and u_z summed over the two faces of a cell.
     sum_y: Segment,
     sum_z: Segment,
-    /// u_x above less below, along y and along z.
+    /// Differences of u_x along y and along z, times twice the spacing.
     x_y: Segment,
     x_z: Segment,
-    /// u_z above less below along y, u_y along z, summed over the two faces of a cell.
+    /// Those of u_z along y and of u_y along z, summed over the two faces of a cell.
     z_y: Segment,
     y_z: Segment,
     whole: f64,
@@ -244,19 +250,20 @@ impl GradientTile {
             quarter: 0.25 / s.spacing,
         };
         let (ends_y, ends_z) = (s.velocity_ends(1), s.velocity_ends(2));
-        for side in 0..2 {
-            tile.sum_y.add(rows.y[side], None, start, ends_y, 1.0);
-            tile.sum_z.add(rows.z[side], None, start, ends_z, 1.0);
-            let sign = [-1.0, 1.0][side];
-            let (row, mirror) = rows.x_y[side];
-            tile.x_y.add(row, mirror, start, Ends::Wrap, sign);
-            let (row, mirror) = rows.x_z[side];
-            tile.x_z.add(row, mirror, start, Ends::Wrap, sign);
+        for face in 0..2 {
+            tile.sum_y.add(rows.y[face], None, start, ends_y, 1.0);
+            tile.sum_z.add(rows.z[face], None, start, ends_z, 1.0);
+        }
+        for (place, (_, factor)) in AROUND.into_iter().enumerate() {
+            let (row, mirror) = rows.x_y[place];
+            tile.x_y.add(row, mirror, start, Ends::Wrap, factor);
+            let (row, mirror) = rows.x_z[place];
+            tile.x_z.add(row, mirror, start, Ends::Wrap, factor);
             for face in 0..2 {
-                let (row, mirror) = rows.z_y[side][face];
-                tile.z_y.add(row, mirror, start, Ends::Wrap, sign);
-                let (row, mirror) = rows.y_z[side][face];
-                tile.y_z.add(row, mirror, start, Ends::Wrap, sign);
+                let (row, mirror) = rows.z_y[place][face];
+                tile.z_y.add(row, mirror, start, Ends::Wrap, factor);
+                let (row, mirror) = rows.y_z[place][face];
+                tile.y_z.add(row, mirror, start, Ends::Wrap, factor);
             }
         }
         tile
@@ -269,22 +276,32 @@ impl GradientTile {
         let u_x = &self.u_x;
         [
             [
-                (u_x.load(simd, i + 2) - u_x.load(simd, i + 1)) * whole,
-                (self.sum_y.load(simd, i + 2) - self.sum_y.load(simd, i)) * quarter,
-                (self.sum_z.load(simd, i + 2) - self.sum_z.load(simd, i)) * quarter,
+                (u_x.load(simd, i, 1) - u_x.load(simd, i, 0)) * whole,
+                along(simd, &self.sum_y, i) * quarter,
+                along(simd, &self.sum_z, i) * quarter,
             ],
             [
-                (self.x_y.load(simd, i + 1) + self.x_y.load(simd, i + 2)) * quarter,
+                (self.x_y.load(simd, i, 0) + self.x_y.load(simd, i, 1)) * quarter,
                 (load(simd, rows.y[1], at) - load(simd, rows.y[0], at)) * whole,
-                self.z_y.load(simd, i + 1) * quarter,
+                self.z_y.load(simd, i, 0) * quarter,
             ],
             [
-                (self.x_z.load(simd, i + 1) + self.x_z.load(simd, i + 2)) * quarter,
-                self.y_z.load(simd, i + 1) * quarter,
+                (self.x_z.load(simd, i, 0) + self.x_z.load(simd, i, 1)) * quarter,
+                self.y_z.load(simd, i, 0) * quarter,
                 (load(simd, rows.z[1], at) - load(simd, rows.z[0], at)) * whole,
             ],
         ]
     }
+}
+
+/// The difference along a row across the eight cells from `i` on, times twice the spacing.
+#[inline(always)]
+fn along<S: Simd>(simd: S, sum: &Segment, i: usize) -> f64x8<S> {
+    let mut difference = f64x8::splat(simd, 0.0);
+    for (offset, factor) in WIDE {
+        difference += (sum.load(simd, i, offset) - sum.load(simd, i, -offset)) * factor;
+    }
+    difference
 }
 
 /// `value` where `weight` is above zero, else zero.

@@ -69,7 +69,7 @@ pub(super) struct Row {
 pub(super) enum Ends {
     /// The other end.
     Wrap,
-    /// The end itself, times the factor plus the lower or upper shift.
+    /// The reflected cell, times the factor plus the lower or upper shift.
     Mirror { factor: f64, shifts: [f64; 2] },
 }
 
@@ -119,18 +119,29 @@ impl Stencil {
         jk
     }
 
-    /// The row of tangential velocities of `component` beside (j, k) along `axis`, reflected by a wall.
+    /// The cell along `axis` that stands for place `at`: around the box, or as a wall reflects it.
+    pub fn image(&self, axis: usize, at: isize) -> usize {
+        let n = self.cells[axis] as isize;
+        let place = match self.faces[axis] {
+            Faces::Periodic => at.rem_euclid(n),
+            Faces::Wall if at < 0 => -1 - at,
+            Faces::Wall if at >= n => 2 * n - 1 - at,
+            Faces::Wall => at,
+        };
+        place.clamp(0, n - 1) as usize
+    }
+
+    /// The row of tangential velocities of `component` `offset` rows from (j, k) along `axis`, reflected by a wall.
     #[inline(always)]
-    pub fn beside(&self, axis: usize, jk: [usize; 2], up: bool, component: usize) -> Row {
-        let edge = if up { self.cells[axis] - 1 } else { 0 };
-        if self.faces[axis] == Faces::Wall && jk[axis - 1] == edge {
-            let wall = self.wall_velocity[axis][usize::from(up)][component];
-            return Row {
-                mirror: Some([-1.0, 2.0 * wall]),
-                ..self.row(jk)
-            };
+    pub fn beside(&self, axis: usize, mut jk: [usize; 2], offset: isize, component: usize) -> Row {
+        let at = jk[axis - 1] as isize + offset;
+        jk[axis - 1] = self.image(axis, at);
+        let beyond = at < 0 || at >= self.cells[axis] as isize;
+        let wall = self.wall_velocity[axis][usize::from(at >= 0)][component];
+        Row {
+            mirror: (beyond && self.faces[axis] == Faces::Wall).then_some([-1.0, 2.0 * wall]),
+            ..self.row(jk)
         }
-        self.row(self.step(axis, jk, up))
     }
 
     /// What lies beyond the ends of a row of velocities of `component` (y or z).
@@ -145,7 +156,13 @@ impl Stencil {
     }
 }
 
-/// Part of a row with one value more on either end: cell `start` + i of the row is at place i + 1.
+/// Differences across a cell that span more than it, of order four: offsets and factors, over twice the spacing.
+pub(super) const WIDE: [(isize, f64); 2] = [(1, 4.0 / 3.0), (2, -1.0 / 6.0)];
+
+/// Values more on either end of a part of a row: as far as [`WIDE`] reaches.
+pub(super) const MARGIN: usize = 2;
+
+/// Part of a row with a margin on either end.
 pub(super) struct Segment([f64; TILE + N_LANES]);
 
 /// Cells along x that are treated in one go: what they need fits in the first cache, on the stack.
@@ -178,28 +195,37 @@ impl Segment {
         let [slope, shift] = mirror.map_or([factor, 0.0], |m| m.map(|m| factor * m));
         let end = row.len().min(start + TILE);
         let n = end - start;
-        for (x, value) in self.0[1..=n].iter_mut().zip(&row[start..end]) {
+        let within = &mut self.0[MARGIN..MARGIN + n];
+        for (x, value) in within.iter_mut().zip(&row[start..end]) {
             let value: f64 = (*value).into();
             *x += slope * value + shift;
         }
-        self.0[0] += slope * beyond(row, start as isize - 1, ends) + shift;
-        self.0[n + 1] += slope * beyond(row, end as isize, ends) + shift;
+        for m in 1..=MARGIN {
+            self.0[MARGIN - m] += slope * beyond(row, start as isize - m as isize, ends) + shift;
+            self.0[MARGIN + n + m - 1] += slope * beyond(row, (end + m) as isize - 1, ends) + shift;
+        }
     }
 
-    /// The eight values from place `at` of the segment on.
+    /// The values of the eight cells from `i` + `offset` on, the first of the segment being 0.
     #[inline(always)]
-    pub fn load<S: Simd>(&self, simd: S, at: usize) -> f64x8<S> {
+    pub fn load<S: Simd>(&self, simd: S, i: usize, offset: isize) -> f64x8<S> {
+        self.load_place(simd, i.wrapping_add_signed(MARGIN as isize + offset))
+    }
+
+    /// The eight values from place `at` on, margin included.
+    #[inline(always)]
+    pub fn load_place<S: Simd>(&self, simd: S, at: usize) -> f64x8<S> {
         f64x8::from_slice(simd, &self.0[at..at + N_LANES])
     }
 
-    /// Writes eight values from place `at` of the segment on.
+    /// Writes eight values from place `at` on, margin included.
     #[inline(always)]
-    pub fn store<S: Simd>(&mut self, values: f64x8<S>, at: usize) {
+    pub fn store_place<S: Simd>(&mut self, values: f64x8<S>, at: usize) {
         values.store_slice(&mut self.0[at..at + N_LANES]);
     }
 }
 
-/// One value of a row or just beyond its ends.
+/// One value of a row or beyond its ends.
 #[inline(always)]
 fn beyond<T: Stored>(row: &[T], at: isize, ends: Ends) -> f64 {
     let n = row.len();
@@ -208,9 +234,14 @@ fn beyond<T: Stored>(row: &[T], at: isize, ends: Ends) -> f64 {
     }
     let upper = at > 0;
     match ends {
-        Ends::Wrap => row[if upper { 0 } else { n - 1 }].into(),
+        Ends::Wrap => row[at.rem_euclid(n as isize) as usize].into(),
         Ends::Mirror { factor, shifts } => {
-            let end: f64 = row[if upper { n - 1 } else { 0 }].into();
+            let image = if upper {
+                2 * n as isize - 1 - at
+            } else {
+                -1 - at
+            };
+            let end: f64 = row[image.clamp(0, n as isize - 1) as usize].into();
             factor * end + shifts[usize::from(upper)]
         }
     }

@@ -275,32 +275,6 @@ fn bits_do_not_depend_on_the_number_of_threads() {
 }
 
 #[test]
-fn every_kth_step_updates() {
-    let grid = Grid::new([4; 3], 1.0, [Faces::Periodic; 3]).unwrap();
-    let parameters = FlowParameters {
-        every: 3,
-        ..FlowParameters::default()
-    };
-    let mut flow = FlowCoupling::new(&grid, None, &Material::default(), &parameters).unwrap();
-    let (q, h) = (noise(320, 1), noise(320, 2));
-    let updated: Vec<bool> = (0..7).map(|_| flow.after_step(&q, &h).unwrap()).collect();
-    assert_eq!(updated, [false, false, true, false, false, true, false]);
-    let counters = flow.counters();
-    assert_eq!(
-        (
-            counters.n_updates,
-            counters.n_solves,
-            counters.n_boundary_solves
-        ),
-        (2, 2, 0)
-    );
-    let single = |field: &[f64]| field.iter().map(|x| *x as f32).collect::<Vec<_>>();
-    let power = flow.power();
-    flow.update(&single(&q), &single(&h)).unwrap();
-    assert!((flow.power() / power - 1.0).abs() < 1e-6 && flow.power() != power);
-}
-
-#[test]
 fn broken_input_is_refused() {
     let grid = Grid::new([4; 3], 1.0, [Faces::Periodic; 3]).unwrap();
     let material = Material::default();
@@ -314,11 +288,6 @@ fn broken_input_is_refused() {
         refusal(small),
         Some(StokesError::Memory { limit: 1000, .. })
     ));
-    let never = FlowParameters {
-        every: 0,
-        ..FlowParameters::default()
-    };
-    assert!(matches!(refusal(never), Some(StokesError::Value(_))));
     let drive = Drive {
         body_force: [1.0, 0.0, 0.0],
         ..Drive::default()

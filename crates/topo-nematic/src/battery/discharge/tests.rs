@@ -1,0 +1,169 @@
+//! Order of the coupling in steps of a given length, and its stability.
+
+use std::f64::consts::PI;
+
+use topo_core::Rejection;
+
+use crate::battery::coupled_flow::CoupledFlow;
+use crate::stabilised::{Drift, Stabilised};
+use crate::{
+    FlowParameters, NematicBattery, NematicParameters, NematicState, SwitchSettings, SwitchTarget,
+    uniaxial,
+};
+
+const N: usize = 24;
+
+/// A tilt that decays, by its director at a place along the wave, 0 to 1.
+#[derive(Clone, Copy, Debug)]
+enum Tilt {
+    Bend,
+    Splay,
+    Even,
+    Odd,
+}
+
+impl Tilt {
+    fn is_between_plates(self) -> bool {
+        matches!(self, Self::Even | Self::Odd)
+    }
+
+    fn director(self, at: f64) -> [f64; 3] {
+        let wave = 0.05 * (2.0 * PI * at).cos();
+        match self {
+            Self::Bend => [wave.cos(), 0.0, wave.sin()],
+            Self::Splay => [wave.sin(), 0.0, wave.cos()],
+            Self::Even => {
+                let tilt = 0.05 * (PI * (at - 0.5)).cos();
+                [tilt.sin(), 0.0, tilt.cos()]
+            }
+            Self::Odd => {
+                let tilt = 0.05 * (2.0 * PI * at).sin();
+                [tilt.sin(), 0.0, tilt.cos()]
+            }
+        }
+    }
+}
+
+/// The field after a time, in steps of one length.
+fn after(tilt: Tilt, time: f64, n_steps: u32) -> Result<Vec<f64>, Rejection> {
+    let parameters = NematicParameters {
+        radius: 1.0,
+        spacing: 1.0,
+        cells: Some(if tilt.is_between_plates() {
+            [4, 4, N]
+        } else {
+            [N, 4, 4]
+        }),
+        particle: false,
+        periodic: !tilt.is_between_plates(),
+        ..Default::default()
+    };
+    let battery = NematicBattery::new(&parameters, &Default::default()).unwrap();
+    let order = parameters.material.order();
+    let state = NematicState::from_fn(*battery.grid(), None, |[x, _, z]| {
+        let along = if tilt.is_between_plates() { z } else { x };
+        uniaxial(order, tilt.director(along / N as f64))
+    })
+    .unwrap();
+    let keep = SwitchSettings {
+        to: SwitchTarget::Keep,
+        ramp: None,
+    };
+    let switched = battery.adopt(&state).unwrap().switch(&keep).unwrap();
+    let surface = battery.charged_surface();
+    let kernel = battery
+        .kernel::<f64>(&surface, battery.accuracy().threads)
+        .without_gaps();
+    let mut field = Stabilised::new(&kernel, state.q_tensor().to_vec())
+        .with_drift(parameters.material.backflow());
+    let mut flow = CoupledFlow::new(&switched, &FlowParameters::default()).unwrap();
+    flow.begin(&kernel, &mut field, None).unwrap();
+    for _ in 0..n_steps {
+        let drift = Some(&mut flow as &mut dyn Drift<f64>);
+        field.try_step(&kernel, time / f64::from(n_steps), drift)?;
+        field.accept();
+    }
+    Ok(field.q)
+}
+
+/// Root mean square distance of two fields.
+fn distance(a: &[f64], b: &[f64]) -> f64 {
+    let sum: f64 = a.iter().zip(b).map(|(x, y)| (x - y).powi(2)).sum();
+    (sum / a.len() as f64).sqrt()
+}
+
+#[test]
+fn coupled_steps_are_of_order_two() {
+    for tilt in [Tilt::Bend, Tilt::Splay, Tilt::Even, Tilt::Odd] {
+        let time = if matches!(tilt, Tilt::Even) {
+            60.0
+        } else {
+            16.0
+        };
+        let exact = after(tilt, time, 256).unwrap();
+        let errors = [8, 16, 32].map(|n| distance(&after(tilt, time, n).unwrap(), &exact));
+        // Errors of flow and relaxation partly cancel, and so differently in each step: the order over both halvings counts.
+        let order = (errors[0] / errors[2]).log2() / 2.0;
+        println!("{tilt:?}: {errors:?} order {order:.2}");
+        assert!(order > 1.9, "{tilt:?} {order}");
+    }
+}
+
+/// A drift of a given ratio to the rate by the molecular field: every mode just decays faster.
+struct Multiple(f64);
+
+impl Drift<f64> for Multiple {
+    fn at(&mut self, _q: &[f64], field: &[f64], drift: &mut [f64]) -> Result<(), Rejection> {
+        for (drift, field) in drift.iter_mut().zip(field) {
+            *drift = self.0 * field;
+        }
+        Ok(())
+    }
+}
+
+#[test]
+fn stiff_drifts_stay_stable() {
+    let parameters = NematicParameters {
+        radius: 1.0,
+        spacing: 1.0,
+        cells: Some([4, 4, N]),
+        particle: false,
+        ..Default::default()
+    };
+    let battery = NematicBattery::new(&parameters, &Default::default()).unwrap();
+    let order = parameters.material.order();
+    let kernel = battery.kernel::<f64>(&battery.charged_surface(), battery.accuracy().threads);
+    // Waves of all lengths, so that all of the spectrum is there.
+    let state = NematicState::from_fn(*battery.grid(), None, |[x, y, z]| {
+        let tilt = 1e-3 * ((7.0 * x + 13.0 * y + 31.0 * z).sin() + (0.5 * PI * z / N as f64).cos());
+        uniaxial(order, [tilt.sin(), 0.0, tilt.cos()])
+    })
+    .unwrap();
+    let mut start = vec![0.0; kernel.array_length()];
+    kernel.spread(state.q_tensor(), &mut start);
+    for (largest, ratio) in [
+        (1.09, 0.0),
+        (1.09, 1.09),
+        (1.09, 0.5),
+        (6.0, 6.0),
+        (6.0, 0.0),
+    ] {
+        let mut field = Stabilised::new(&kernel, start.clone()).with_drift(largest);
+        let mut drift = Multiple(ratio);
+        field.set_drift(&kernel, &mut drift).unwrap();
+        let mut energy = kernel.energy(&field.q).total();
+        let rounding = 1e-9 * energy;
+        for step in 0..60 {
+            // Steps that grow: forty times the explicit limit and more.
+            let dt = 6.0 * 1.03_f64.powi(step);
+            field.try_step(&kernel, dt, Some(&mut drift)).unwrap();
+            field.accept();
+            let next = kernel.energy(&field.q).total();
+            assert!(
+                next <= energy + rounding,
+                "{largest} {ratio} step {step}: {energy:e} {next:e}"
+            );
+            energy = next;
+        }
+    }
+}
