@@ -163,7 +163,7 @@ impl NematicScene {
 
     /// A row of a case with its settings only.
     pub(super) fn blank_row(&self, case: &NematicCase) -> NematicRow {
-        NematicRow {
+        let row = NematicRow {
             radius: case.nematic.radius,
             spacing: case.nematic.spacing,
             q: case.q,
@@ -171,6 +171,10 @@ impl NematicScene {
             precision: self.accuracy.precision.name().to_owned(),
             flow: if case.flow.is_some() { "on" } else { "off" }.to_owned(),
             ..NematicRow::default()
+        };
+        NematicRow {
+            case: row.case_name(),
+            ..row
         }
     }
 }
