@@ -187,18 +187,22 @@ impl<'a, 'h> Charging<'a, 'h> {
             let mut q = vec![0.0; self.kernel.array_length()];
             self.kernel.spread(best.state.q_tensor(), &mut q);
             let hooks = &*self.hooks;
+            let can_kick = self.at.n_kicks < MOST_KICKS;
             let (particle, mut n_products) = (self.battery.particle.as_ref(), self.at.n_products);
-            let check = Check::new(&self.kernel, particle, &q, &mut n_products, || {
-                hooks.is_interrupted()
-            });
+            let check = Check::new(
+                &self.kernel,
+                particle,
+                &q,
+                can_kick,
+                &mut n_products,
+                || hooks.is_interrupted(),
+            );
             if hooks.is_interrupted() {
                 // done again from its beginning by who goes on
                 return Ok(End::Interrupted);
             }
             let kick = match &check {
-                Some(check)
-                    if check.state == MinimumState::Saddle && self.at.n_kicks < MOST_KICKS =>
-                {
+                Some(check) if check.state == MinimumState::Saddle && can_kick => {
                     check.kicked(&mut n_products)
                 }
                 _ => None,

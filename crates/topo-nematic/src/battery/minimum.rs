@@ -77,11 +77,13 @@ pub(super) struct Check<'a> {
 }
 
 impl<'a> Check<'a> {
-    /// Looks for the lowest mode of the state `q`; `None` when `stop` said so or none was found.
+    /// Looks for the lowest mode of the state `q`, or for any unstable one if it `can_kick`; `None` when `stop` said so or none was
+    /// found.
     pub fn new(
         kernel: &'a Kernel<f64>,
         particle: Option<&'a Particle>,
         q: &'a [f64],
+        can_kick: bool,
         n_products: &mut u64,
         stop: impl FnMut() -> bool,
     ) -> Option<Self> {
@@ -89,6 +91,7 @@ impl<'a> Check<'a> {
         let wanted = Accuracy {
             near_zero: SADDLE * unit,
             unit,
+            any_saddle: can_kick,
         };
         let hessian = Hessian::new(kernel, q);
         let lowest = hessian.lowest(particle, wanted, n_products, stop)?;

@@ -17,12 +17,14 @@ pub(crate) struct Accuracy {
     pub near_zero: f64,
     /// Scale of the lowest eigenvalues, in L/xi_N².
     pub unit: f64,
+    /// Stop at the first direction in which the energy clearly falls: enough to leave a saddle.
+    pub any_saddle: bool,
 }
 
 /// Accuracy as a share of the eigenvalue.
 const SHARE: f64 = 3e-3;
 /// Residual that is good enough, as a share of the unit or of the eigenvalue, and of an eigenvalue near zero.
-const RESIDUAL: [f64; 2] = [0.02, 0.2];
+const RESIDUAL: [f64; 2] = [0.05, 0.2];
 
 impl Accuracy {
     /// Whether it is reached with this residual and distance to the next eigenvalue.
@@ -30,6 +32,9 @@ impl Accuracy {
     /// The error is at most the residual's square over the distance; a pair that is not told apart yet looks like one eigenvalue,
     /// wrong by its distance, which the residual shows.
     fn is_reached(self, eigenvalue: f64, residual: f64, gap: f64) -> bool {
+        if self.any_saddle && eigenvalue < -3.0 * self.near_zero {
+            return true;
+        }
         let size = eigenvalue.abs();
         let error = residual.min(residual * residual / gap);
         let wrong = (RESIDUAL[1] * size).min(RESIDUAL[0] * size.max(self.unit));
