@@ -1,16 +1,18 @@
 //! A charge on its way: relaxations from all start fields, the check of the best state, kicks out of saddles.
 
-use serde::{Deserialize, Serialize};
+mod unfinished;
+
 use topo_core::CpuClock;
 
+use self::unfinished::{Best, Moving, Progressed, Unfinished};
 use super::NematicBattery;
 use super::charge::ChargeSettings;
-use super::hooks::{MOST_COUNTED, Phase, Progress, RunHooks};
-use super::minimum::{Check, MinimumReport, MinimumState};
+use super::hooks::{Phase, Progress, RunHooks};
+use super::minimum::{Check, MinimumState};
 use super::record::ChargeReport;
 use crate::kernel::run::Kernel;
 use crate::memory::ByteAccount;
-use crate::relax::{Clock, Relaxation};
+use crate::relax::Relaxation;
 use crate::{NematicError, NematicState, order_parameter};
 
 /// Steps between looks at the order parameter.
@@ -18,79 +20,6 @@ const CHECK_EVERY: u64 = 25;
 /// Most kicks along unstable modes.
 const MOST_KICKS: u32 = 4;
 const SCHEMA: &str = "nematic-charge/3";
-
-/// The best state so far.
-#[derive(Clone, Serialize, Deserialize)]
-struct Best {
-    energy: f64,
-    state: NematicState,
-    seed: f64,
-    rms_field: f64,
-}
-
-/// A relaxation in progress.
-#[derive(Clone, Serialize, Deserialize)]
-struct Moving {
-    q: Vec<f64>,
-    velocity: Vec<f64>,
-    clock: Clock,
-    last_order: Option<f64>,
-}
-
-/// What of a charge is kept from moment to moment.
-#[derive(Clone, Default, Serialize, Deserialize)]
-struct Progressed {
-    /// Start fields gone through.
-    seed: usize,
-    n_kicks: u32,
-    best: Option<Best>,
-    minimum: Option<MinimumReport>,
-    n_steps: u64,
-    n_products: u64,
-    has_reached_limit: bool,
-    n_bytes: u64,
-    cpu_seconds: f64,
-}
-
-/// A charge on its way; one that is done has gone through all seeds and its check.
-#[derive(Serialize, Deserialize)]
-struct Unfinished {
-    progressed: Progressed,
-    moving: Option<Moving>,
-}
-
-impl Unfinished {
-    /// What does not fit a charge with so many seeds, on arrays of this length.
-    fn flaw(
-        &self,
-        battery: &NematicBattery,
-        n_seeds: usize,
-        length: usize,
-    ) -> Option<&'static str> {
-        let whole = |x: &[f64]| x.len() == length && x.iter().all(|x| x.is_finite());
-        let kept = |best: &Best| {
-            let numbers = [best.energy, best.seed, best.rms_field];
-            numbers.iter().all(|x| x.is_finite())
-                && *best.state.grid() == battery.grid
-                && best.state.particle().copied() == battery.particle
-        };
-        let moves = |m: &Moving| whole(&m.q) && whole(&m.velocity) && m.clock.is_sound();
-        let p = &self.progressed;
-        let through = p.seed >= n_seeds;
-        let found = |m: &MinimumReport| m.lowest_eigenvalue.is_finite() && m.residual.is_finite();
-        if p.seed > n_seeds || (through && p.best.is_none()) || p.n_kicks > MOST_KICKS {
-            Some("it has gone through other start fields")
-        } else if !p.best.iter().all(kept) || !p.minimum.iter().all(found) {
-            Some("the best state is one of another battery")
-        } else if !self.moving.iter().all(moves) || (!through && self.moving.is_none()) {
-            Some("the relaxation is one of another battery")
-        } else if p.n_steps.max(p.n_products) >= MOST_COUNTED || !p.cpu_seconds.is_finite() {
-            Some("a counter is out of range")
-        } else {
-            None
-        }
-    }
-}
 
 /// How a relaxation ended.
 #[derive(Clone, Copy, PartialEq, Eq)]
