@@ -1,10 +1,12 @@
 //! The nematic battery: charge (patterned anchoring, relax) → release (switch the anchoring) → discharge.
 
 pub(crate) mod charge;
+mod charging;
 mod coupled_flow;
 pub(crate) mod discharge;
 pub(crate) mod final_state;
 pub(crate) mod hooks;
+pub(crate) mod minimum;
 mod ramp;
 pub(crate) mod record;
 pub(crate) mod switch;

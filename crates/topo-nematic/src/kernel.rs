@@ -242,4 +242,4 @@ fn unseen<L: Lanes>(token: L::Token, n: usize) -> L {
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

@@ -13,6 +13,7 @@ mod error;
 mod fft;
 mod flow;
 mod grid;
+mod hessian;
 mod kernel;
 mod material;
 mod memory;
@@ -35,6 +36,7 @@ pub use battery::charge::{ChargeSettings, ChargedNematic};
 pub use battery::discharge::{Discharge, DischargeSettings};
 pub use battery::final_state::{FinalSource, FinalState};
 pub use battery::hooks::{Phase, Progress, RunHooks};
+pub use battery::minimum::{MinimumReport, MinimumState};
 pub use battery::record::{ChargeReport, FlowReport, NematicSample, PhaseReport, RunRecord};
 pub use battery::switch::{SwitchSettings, SwitchTarget, SwitchedNematic};
 pub use boundary::{Boundary, FreeSurface};
@@ -50,7 +52,7 @@ pub use order::{OrderParameter, order_parameter};
 pub use parameters::{ExternalField, NematicAccuracy, NematicParameters, Sides};
 pub use particle::Particle;
 pub use real::Precision;
-pub use ring::{Ring, ring, ring_line};
+pub use ring::{Ring, is_near_particle, ring, ring_line};
 pub use state::NematicState;
 pub use stokes::{
     Drive, FaceSites, MacField, NoSlip, NoSlipReport, Sparse, SparseOptions, Spectral, StokesError,

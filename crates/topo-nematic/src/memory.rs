@@ -27,7 +27,7 @@ impl ByteAccount {
 /// Bytes that the phases of a run without flow will need, by estimate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct MemoryEstimate {
-    /// To charge: positions, velocities, forces and the state.
+    /// To charge: positions, velocities, forces and the state; to leave a saddle, three vectors, a mode and the state twice.
     pub charge: u64,
     /// To discharge: five fields of the integrator and two states.
     pub discharge: u64,
@@ -45,7 +45,7 @@ pub fn estimate(grid: &Grid, precision: Precision) -> MemoryEstimate {
     let field = |n_bytes: u64| 5 * n_bytes * grid.n_cells() as u64;
     let geometry = 9 * grid.n_cells() as u64;
     MemoryEstimate {
-        charge: 4 * field(8) + geometry,
+        charge: 6 * field(8) + geometry,
         discharge: 5 * field(precision.n_bytes()) + 2 * field(8) + geometry,
     }
 }

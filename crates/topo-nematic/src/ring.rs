@@ -2,8 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::NematicState;
+use crate::boundary::norm;
 use crate::tensor::{is_ordered_above, largest_eigenvalue};
+use crate::{NematicState, Particle};
 
 /// Number of azimuthal sectors in which the ring is looked for.
 const N_SECTORS: usize = 128;
@@ -37,7 +38,11 @@ impl Ring {
 
 /// The ring of a state: in each azimuthal sector the centre of the cells whose order is below `threshold`, weighted by how far below.
 ///
-/// None without a particle, or when sectors without such cells show that no closed ring surrounds it.
+/// None without a particle, when sectors without such cells show that no closed ring surrounds it, or when they lie elsewhere: at the
+/// poles, at the edge of the cell, everywhere.
+///
+/// # Validation
+/// `only_low_order_around_the_particle_is_a_ring`
 pub fn ring(state: &NematicState, threshold: f64) -> Option<Ring> {
     let sectors = sectors(state, threshold)?;
     let n = N_SECTORS as f64;
@@ -65,18 +70,42 @@ pub fn ring(state: &NematicState, threshold: f64) -> Option<Ring> {
 /// Where the core of a disclination lies against the particle, [`defect_lines`](crate::defect_lines) ends there; this line goes on.
 pub fn ring_line(state: &NematicState, threshold: f64) -> Option<Vec<[f64; 3]>> {
     let points = sectors(state, threshold)?.into_iter().enumerate();
-    let place = |(s, [radius, height]): (usize, [f64; 2])| {
-        let angle = std::f64::consts::TAU * (s as f64 + 0.5) / N_SECTORS as f64;
-        [radius * angle.cos(), radius * angle.sin(), height]
-    };
-    Some(points.map(place).collect())
+    Some(points.map(|(s, centre)| place(s, centre)).collect())
 }
 
-/// Distance from the axis and height of the ring in each sector.
-fn sectors(state: &NematicState, threshold: f64) -> Option<Vec<[f64; 2]>> {
-    let (grid, particle) = (state.grid(), state.particle()?);
+/// Whether a point, relative to the particle's centre, is nearer to the particle than to the outer faces of the cell, periodic ones
+/// included: what lies beyond is not the particle's ring. Not without a particle.
+pub fn is_near_particle(state: &NematicState, point: [f64; 3]) -> bool {
+    let Some(particle) = state.particle() else {
+        return false;
+    };
+    let (extent, centre) = (state.grid().extent(), particle.centre());
+    let to_face = |axis: usize| {
+        let x = centre[axis] + point[axis];
+        x.min(extent[axis] - x)
+    };
+    let nearest = (0..3).map(to_face).fold(f64::INFINITY, f64::min);
+    norm(point) - particle.radius() < nearest
+}
+
+/// A cell of low order, seen from the axis.
+struct LowCell {
+    /// Distance from the axis and height.
+    place: [f64; 2],
+    weight: f64,
+    /// The sectors that it covers, so that none is missed by chance.
+    sectors: std::ops::RangeInclusive<i64>,
+}
+
+/// Calls `f` with each fluid cell whose order is below `threshold`.
+fn for_each_low(
+    state: &NematicState,
+    particle: &Particle,
+    threshold: f64,
+    mut f: impl FnMut(LowCell),
+) {
+    let grid = state.grid();
     let [nx, ny, nz] = grid.cells();
-    let mut sectors = vec![[0.0_f64; 3]; N_SECTORS];
     for k in 0..nz {
         for j in 0..ny {
             let is_fluid = state.fluid_in_row(j, k);
@@ -90,22 +119,131 @@ fn sectors(state: &NematicState, threshold: f64) -> Option<Vec<[f64; 2]>> {
                     continue;
                 }
                 let d = particle.offset(grid, grid.centre([i, j, k]));
-                let weight = threshold - order;
-                // Each cell counts in the sectors it covers, so that none is missed by chance.
                 let angle = d[1].atan2(d[0]).rem_euclid(std::f64::consts::TAU);
                 let reach = d[0].hypot(d[1]).max(grid.spacing());
                 let half = 0.6 * grid.spacing() / reach * N_SECTORS as f64 / std::f64::consts::TAU;
                 let at = angle / std::f64::consts::TAU * N_SECTORS as f64;
-                let (first, last) = ((at - half).floor() as i64, (at + half).floor() as i64);
-                for s in first..=last {
-                    let sector = &mut sectors[s.rem_euclid(N_SECTORS as i64) as usize];
-                    sector[0] += weight;
-                    sector[1] += weight * reach;
-                    sector[2] += weight * d[2];
-                }
+                f(LowCell {
+                    place: [reach, d[2]],
+                    weight: threshold - order,
+                    sectors: (at - half).floor() as i64..=(at + half).floor() as i64,
+                });
             }
         }
     }
+}
+
+fn wrapped(sector: i64) -> usize {
+    sector.rem_euclid(N_SECTORS as i64) as usize
+}
+
+/// Distance from the axis and height of the ring in each sector; none where what is low in order is no ring of the particle.
+fn sectors(state: &NematicState, threshold: f64) -> Option<Vec<[f64; 2]>> {
+    let particle = state.particle()?;
+    let mut sums = vec![[0.0_f64; 3]; N_SECTORS];
+    for_each_low(state, particle, threshold, |cell| {
+        for s in cell.sectors {
+            let sum = &mut sums[wrapped(s)];
+            sum[0] += cell.weight;
+            sum[1] += cell.weight * cell.place[0];
+            sum[2] += cell.weight * cell.place[1];
+        }
+    });
     let mean = |s: &[f64; 3]| (s[0] > 0.0).then(|| [s[1] / s[0], s[2] / s[0]]);
-    sectors.iter().map(mean).collect()
+    let centres: Vec<[f64; 2]> = sums.iter().map(mean).collect::<Option<_>>()?;
+    is_ring(state, particle, threshold, &centres).then_some(centres)
+}
+
+/// Whether the centres are those of a ring: near the particle, each with cells of low order around it (the middle of two caps has
+/// none), and with none close to the axis (a cap covers it).
+///
+/// A quarter of the sectors may fail, where a strongly buckled ring overhangs.
+fn is_ring(
+    state: &NematicState,
+    particle: &Particle,
+    threshold: f64,
+    centres: &[[f64; 2]],
+) -> bool {
+    let mut nearest = vec![f64::INFINITY; N_SECTORS];
+    let mut innermost = vec![f64::INFINITY; N_SECTORS];
+    for_each_low(state, particle, threshold, |cell| {
+        for s in cell.sectors {
+            let s = wrapped(s);
+            let [radius, height] = cell.place;
+            let distance = (radius - centres[s][0]).hypot(height - centres[s][1]);
+            nearest[s] = nearest[s].min(distance);
+            innermost[s] = innermost[s].min(radius);
+        }
+    });
+    let spacing = state.grid().spacing();
+    let holds = |s: &usize| {
+        nearest[*s] < 1.5 * spacing
+            && innermost[*s] > 1.5 * spacing
+            && is_near_particle(state, place(*s, centres[*s]))
+    };
+    4 * (0..N_SECTORS).filter(holds).count() >= 3 * N_SECTORS
+}
+
+/// The point of a sector at this distance from the axis and this height, relative to the particle's centre.
+fn place(sector: usize, [radius, height]: [f64; 2]) -> [f64; 3] {
+    let angle = std::f64::consts::TAU * (sector as f64 + 0.5) / N_SECTORS as f64;
+    [radius * angle.cos(), radius * angle.sin(), height]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tensor::uniaxial;
+    use crate::{Faces, Grid};
+
+    /// A particle of radius 6 in a box whose order is 0.1 where `is_low` of the place relative to its centre, else 0.5.
+    fn found(is_low: impl Fn([f64; 3]) -> bool) -> Option<Ring> {
+        let faces = [Faces::Wall, Faces::Wall, Faces::Wall];
+        let grid = Grid::new([32, 32, 24], 1.0, faces).unwrap();
+        let particle = Particle::central(&grid, 6.0).unwrap();
+        let state = NematicState::from_fn(grid, Some(particle), |p| {
+            let low = is_low(particle.offset(&grid, p));
+            uniaxial(if low { 0.1 } else { 0.5 }, [0.0, 0.0, 1.0])
+        });
+        ring(&state.unwrap(), 0.35)
+    }
+
+    fn tube(radius: f64, height: f64) -> impl Fn([f64; 3]) -> bool {
+        move |[x, y, z]| (x.hypot(y) - radius).hypot(z - height) < 1.5
+    }
+
+    #[test]
+    fn only_low_order_around_the_particle_is_a_ring() {
+        let near = found(tube(7.5, 0.0)).unwrap();
+        assert!(
+            (near.radius - 7.5).abs() < 0.3 && near.height.abs() < 0.1,
+            "{near:?}"
+        );
+        let above = found(tube(6.2, 3.5)).unwrap();
+        assert!((above.height - 3.5).abs() < 0.3, "{above:?}");
+        let cap = |z: f64| move |p: [f64; 3]| p[0].hypot(p[1]).hypot(p[2] - z) < 3.0;
+        assert_eq!(found(|p| cap(6.0)(p) || cap(-6.0)(p)), None, "two caps");
+        assert_eq!(found(cap(6.0)), None, "one cap");
+        assert_eq!(
+            found(|[x, y, _]| x.abs().max(y.abs()) > 14.0),
+            None,
+            "sides"
+        );
+        let edge = |[x, y, z]: [f64; 3]| x.abs().max(y.abs()) > 13.0 && z.abs() > 9.0;
+        assert_eq!(found(edge), None, "edges of both plates");
+        let one_edge = move |p: [f64; 3]| edge(p) && p[2] > 0.0;
+        assert_eq!(found(one_edge), None, "edge of one plate");
+        assert_eq!(found(|_| true), None, "no order at all");
+    }
+
+    #[test]
+    fn a_ring_that_overhangs_is_kept() {
+        let wavy = |[x, y, z]: [f64; 3]| {
+            let height = 3.0 * (3.0 * y.atan2(x)).sin();
+            (x.hypot(y) - 7.5).hypot(z - height) < 1.5
+        };
+        let ring = found(wavy).unwrap();
+        assert_eq!(ring.mode(), 3);
+        assert!((ring.amplitude() - 3.0).abs() < 0.4, "{}", ring.amplitude());
+    }
 }

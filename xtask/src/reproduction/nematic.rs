@@ -200,22 +200,20 @@ fn undulations(t: &Tables) -> Said {
 
 fn amplitudes(t: &Tables) -> Said {
     let (_, above) = sides(of(t)?);
-    let heights: Vec<f64> = above
+    let heights: Vec<(u32, f64)> = above
         .iter()
-        .filter_map(|r| Some(r.ring_amplitude? / r.radius))
+        .filter_map(|r| Some((r.q, r.ring_amplitude? / r.radius)))
         .collect();
-    let (first, last) = (*heights.first()?, *heights.last()?);
+    let ((from, first), (to, last)) = (*heights.first()?, *heights.last()?);
     if heights.len() < 2 {
         return None;
     }
-    let grows = heights.windows(2).filter(|w| w[1] > w[0]).count();
+    let grows = heights.windows(2).filter(|w| w[1].1 > w[0].1).count();
     Some((
         format!(
-            "from {} R at q = {} to {} R at q = {}; it grows in {grows} of {} steps",
+            "from {} R at q = {from} to {} R at q = {to}; it grows in {grows} of {} steps",
             text::number(first, 3),
-            above[0].q,
             text::number(last, 3),
-            above[above.len() - 1].q,
             heights.len() - 1
         ),
         Verdict::both(last > first, grows == heights.len() - 1),

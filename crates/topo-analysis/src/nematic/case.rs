@@ -7,8 +7,9 @@ use topo_core::{
     FileError, Interrupt, StopReason, load_checkpoint, save_checkpoint, write_atomic_bytes,
 };
 use topo_nematic::{
-    ChargedNematic, Discharge, DischargeSettings, FinalSource, FlowCoupling, NematicAccuracy,
-    NematicBattery, NematicError, NematicState, Phase, Progress, RunHooks, Threads,
+    ChargeReport, ChargedNematic, Discharge, DischargeSettings, FinalSource, FlowCoupling,
+    MinimumState, NematicAccuracy, NematicBattery, NematicError, NematicState, Phase, Progress,
+    RunHooks, Threads,
 };
 
 use super::field::{self, FieldSnapshot};
@@ -22,7 +23,7 @@ use crate::table::{push_warning, write_table};
 use crate::times::DischargeTimes;
 
 /// Changes whenever the same scene gives other numbers than before; finished cases of another version are computed again.
-pub(super) const RESULTS_VERSION: u32 = 5;
+pub(super) const RESULTS_VERSION: u32 = 6;
 
 /// Shares of the energy whose times a row lists.
 pub const NEMATIC_SHARES: [f64; 4] = [0.5, 0.9, 0.99, 0.999];
@@ -187,12 +188,15 @@ impl CaseRun<'_> {
         let at = |times: &DischargeTimes, k: usize| times.at(NEMATIC_SHARES[k]).map(|t| t.value);
         let ring = charged.ring(RING_ORDER);
         let (charge, discharge) = (charged.report(), &run.record.report);
+        let minimum = charge.minimum.as_ref();
         let flow = discharge.flow.as_ref().map(|f| f.counters);
         let mut row = NematicRow {
             f_charged,
             f_after_switch: run.start,
             f_final: end,
             order_parameter: charged.order().magnitude(),
+            lowest_eigenvalue: minimum.map(|m| m.lowest_eigenvalue),
+            state: minimum.map(|m| m.state),
             ring_radius: ring.as_ref().map(|r| r.radius),
             ring_mode: ring.as_ref().map(|r| r.mode() as u32),
             ring_amplitude: ring.as_ref().map(|r| r.amplitude()),
@@ -224,6 +228,9 @@ impl CaseRun<'_> {
                     charge.stop, charge.rms_field
                 ),
             );
+        }
+        if let Some(text) = stability_warning(charge) {
+            push_warning(&mut row.warnings, &text);
         }
         if !discharge.stop.is_success() {
             push_warning(
@@ -280,6 +287,7 @@ impl CaseRun<'_> {
             "charge": charged.report(),
             "energy_charged": charged.energy(),
             "order_charged": charged.order(),
+            "minimum": charged.report().minimum,
             "ring_charged": charged.ring(RING_ORDER),
             "energy_removed_by_switch": run.removed,
             "energy_after_switch": run.start,
@@ -333,6 +341,20 @@ fn final_state_warnings(run: &Discharge) -> Vec<String> {
 
 /// Share of the energy stored by which a discharge may end below its final state: beyond is not rounding.
 const BELOW: f64 = 1e-3;
+
+/// What the check of the charged state found that a reader of its row must know.
+fn stability_warning(charge: &ChargeReport) -> Option<String> {
+    match &charge.minimum {
+        Some(m) if m.state == MinimumState::Saddle => Some(format!(
+            "charged state is a saddle after {} kicks: lowest eigenvalue {:.1e}",
+            m.n_kicks, m.lowest_eigenvalue
+        )),
+        None if charge.is_converged() => {
+            Some("lowest mode of the charged state was not found".to_owned())
+        }
+        _ => None,
+    }
+}
 
 /// Whether what a checkpoint holds is the reason why a run was refused.
 fn is_unusable_checkpoint(error: &NematicError) -> bool {

@@ -55,17 +55,19 @@ pub struct NematicCase {
 }
 
 impl NematicScene {
-    /// The published sweep, q = 1 to 12: at radius 15 without flow but for one q (draft), 25 without and with flow (standard),
-    /// and the published 52.5 with flow (paper).
+    /// The published sweep: q = 1 to 10 at radius 20 without flow but for one q (draft), q = 1 to 12 at 25 without and with flow
+    /// (standard) and at the published 52.5 with flow (paper).
+    ///
+    /// The draft's particle is the smallest whose buckled rings (from q = 7 on) have eight nodes a wavelength at this spacing.
     pub fn published(preset: Preset) -> Self {
-        let (radius, flowing) = match preset {
-            Preset::Draft => (15.0, Some(vec![DRAFT_FLOW])),
-            Preset::Standard => (25.0, Some((1..=12).collect())),
-            Preset::Paper | Preset::Reference => (52.5, None),
+        let (radius, most, flowing) = match preset {
+            Preset::Draft => (20.0, 10, Some(vec![DRAFT_FLOW])),
+            Preset::Standard => (25.0, 12, Some((1..=12).collect())),
+            Preset::Paper | Preset::Reference => (52.5, 12, None),
         };
         Self {
             folder: "nematic".to_owned(),
-            charges: (1..=12).collect(),
+            charges: (1..=most).collect(),
             flowing,
             nematic: NematicParameters {
                 radius,
@@ -163,7 +165,7 @@ impl NematicScene {
 
     /// A row of a case with its settings only.
     pub(super) fn blank_row(&self, case: &NematicCase) -> NematicRow {
-        NematicRow {
+        let row = NematicRow {
             radius: case.nematic.radius,
             spacing: case.nematic.spacing,
             q: case.q,
@@ -171,6 +173,28 @@ impl NematicScene {
             precision: self.accuracy.precision.name().to_owned(),
             flow: if case.flow.is_some() { "on" } else { "off" }.to_owned(),
             ..NematicRow::default()
+        };
+        NematicRow {
+            case: row.case_name(),
+            ..row
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use topo_nematic::NematicBattery;
+
+    use super::*;
+
+    #[test]
+    fn published_presets_resolve_their_patterns() {
+        for preset in [Preset::Draft, Preset::Standard, Preset::Paper] {
+            let scene = NematicScene::published(preset);
+            for case in scene.cases() {
+                let battery = NematicBattery::new(&case.nematic, &scene.accuracy).unwrap();
+                assert!(battery.warnings().is_empty(), "{:?}", battery.warnings());
+            }
         }
     }
 }

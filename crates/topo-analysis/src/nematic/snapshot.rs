@@ -1,7 +1,9 @@
 //! What is kept of the field at a few times: defect lines, and the vertical plane through the particle's centre.
 
 use serde::{Deserialize, Serialize};
-use topo_nematic::{FlowCoupling, NematicState, defect_lines, order_and_director, ring_line};
+use topo_nematic::{
+    FlowCoupling, NematicState, defect_lines, is_near_particle, order_and_director, ring_line,
+};
 
 use super::table::{LinePoint, SlicePoint};
 
@@ -69,7 +71,8 @@ impl Kept {
         let whole = {
             let line = self.lines[first..].iter().filter(|p| p.line == 0);
             let points: Vec<LinePoint> = line.cloned().collect();
-            (goes_around(&points)).then_some(points)
+            let near = |p: &LinePoint| is_near_particle(state, [p.x, p.y, p.z]);
+            (goes_around(&points) && points.iter().all(near)).then_some(points)
         };
         match whole {
             Some(points) => self.ring.extend(points),

@@ -1,10 +1,13 @@
 //! Rows of the nematic tables: sweep, time series, defect lines, slices.
 
 use serde::{Deserialize, Serialize};
+use topo_nematic::MinimumState;
 
 /// One discharge of a charged colloid: lengths in ξ_N, energies in L ξ_N, times in τ_N.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct NematicRow {
+    /// Folder of the case.
+    pub case: String,
     /// Radius of the particle.
     pub radius: f64,
     /// Edge of a cell.
@@ -25,6 +28,11 @@ pub struct NematicRow {
     pub f_final: f64,
     /// Size of the horizontal order parameter after charging, zero below the buckling.
     pub order_parameter: f64,
+    /// Lowest eigenvalue of the Hessian of the energy at the charged state, in L/ξ_N²: a small change along its mode decays at Γ
+    /// times this.
+    pub lowest_eigenvalue: Option<f64>,
+    /// What it says of the charged state: minimum, saddle or marginal.
+    pub state: Option<MinimumState>,
     /// Mean distance of the ring from the axis.
     pub ring_radius: Option<f64>,
     /// Undulations of the ring's height: the strongest mode.
@@ -169,6 +177,7 @@ mod tests {
         let path = folder.path().join("sweep.csv");
         let rows = vec![NematicRow {
             q: 4,
+            state: Some(MinimumState::Marginal),
             t999: Some(3.5),
             warnings: "a;b".into(),
             ..Default::default()
@@ -181,7 +190,7 @@ mod tests {
                 .lines()
                 .next()
                 .unwrap(),
-            "radius,spacing,q,boundary,precision,flow,f_charged,f_after_switch,f_final,order_parameter,ring_radius,ring_mode,ring_amplitude,t50,t90,t99,t999,t50_charged,t90_charged,t99_charged,t999_charged,late_rate,steps,evaluations,stokes_updates,stokes_iterations,cpu_seconds,peak_bytes,warnings"
+            "case,radius,spacing,q,boundary,precision,flow,f_charged,f_after_switch,f_final,order_parameter,lowest_eigenvalue,state,ring_radius,ring_mode,ring_amplitude,t50,t90,t99,t999,t50_charged,t90_charged,t99_charged,t999_charged,late_rate,steps,evaluations,stokes_updates,stokes_iterations,cpu_seconds,peak_bytes,warnings"
         );
     }
 }

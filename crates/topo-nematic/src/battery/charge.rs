@@ -1,14 +1,14 @@
 //! Charging: the nematic relaxes with a pattern on the particle.
 
 use serde::{Deserialize, Serialize};
-use topo_core::{CpuClock, InvalidValue, finite, positive};
+use topo_core::{InvalidValue, finite, positive};
 
 use super::NematicBattery;
-use super::hooks::{MOST_COUNTED, Phase, Progress, RunHooks};
+use super::charging::Charging;
+use super::hooks::RunHooks;
 use super::record::ChargeReport;
 use crate::kernel::run::Kernel;
 use crate::memory::ByteAccount;
-use crate::relax::{Clock, Relaxation};
 use crate::{
     EnergyParts, NematicError, NematicState, OrderParameter, Particle, Ring, order_parameter, ring,
 };
@@ -67,60 +67,11 @@ pub struct ChargedNematic {
     report: ChargeReport,
 }
 
-/// Steps between looks at the order parameter.
-const CHECK_EVERY: u64 = 25;
-const SCHEMA: &str = "nematic-charge/2";
-
-/// A charge on its way; one that is done has gone through all seeds.
-#[derive(Serialize, Deserialize)]
-struct Unfinished {
-    seed: usize,
-    best: Option<(f64, NematicState, f64, f64)>,
-    q: Vec<f64>,
-    velocity: Vec<f64>,
-    clock: Clock,
-    n_steps: u64,
-    last_order: Option<f64>,
-    is_converged: bool,
-    n_bytes: u64,
-    cpu_seconds: f64,
-}
-
-impl Unfinished {
-    /// What does not fit a charge with so many seeds, on arrays of this length.
-    fn flaw(
-        &self,
-        battery: &NematicBattery,
-        n_seeds: usize,
-        length: usize,
-    ) -> Option<&'static str> {
-        let whole = |x: &[f64]| x.len() == length && x.iter().all(|x| x.is_finite());
-        let kept = |(energy, state, seed, rms): &(f64, NematicState, f64, f64)| {
-            let numbers = [energy, seed, rms].iter().all(|x| x.is_finite());
-            numbers
-                && *state.grid() == battery.grid
-                && state.particle().copied() == battery.particle
-        };
-        if self.seed > n_seeds || (self.seed == n_seeds && self.best.is_none()) {
-            Some("it has gone through other start fields")
-        } else if !self.best.iter().all(kept) {
-            Some("the best state is one of another battery")
-        } else if self.seed < n_seeds
-            && !(whole(&self.q) && whole(&self.velocity) && self.clock.is_sound())
-        {
-            Some("the relaxation is one of another battery")
-        } else if self.n_steps >= MOST_COUNTED || !self.cpu_seconds.is_finite() {
-            Some("a counter is out of range")
-        } else {
-            None
-        }
-    }
-}
-
 impl NematicBattery {
     /// Lets the nematic relax with the pattern on the particle.
     ///
-    /// A charge that is interrupted or reaches its limit of steps keeps what it has and says so in its report.
+    /// The state that is left is checked: a saddle is left by a kick along its unstable mode, and relaxed again. A charge that is
+    /// interrupted or reaches its limit of steps keeps what it has, unchecked, and says so in its report.
     ///
     /// # Errors
     /// A setting out of range, or a checkpoint that cannot be used.
@@ -129,7 +80,7 @@ impl NematicBattery {
         settings: &ChargeSettings,
         hooks: &mut RunHooks<'_>,
     ) -> Result<ChargedNematic, NematicError> {
-        self.relax(settings, None, hooks)
+        self.relax(settings, None, hooks, true)
     }
 
     /// Lets the nematic relax from a given state; the seeds of the settings are not used.
@@ -148,7 +99,7 @@ impl NematicBattery {
             coarse_start: false,
             ..settings.clone()
         };
-        self.relax(&once, Some(start), hooks)
+        self.relax(&once, Some(start), hooks, true)
     }
 
     /// Takes a given state as charged, as it is.
@@ -165,6 +116,7 @@ impl NematicBattery {
             rms_field: kernel.rms_field_of(state),
             energy: kernel.energy_of(state),
             order: order_parameter(state, self.parameters.material.order()),
+            minimum: None,
             cpu_seconds: 0.0,
             bytes: ByteAccount::default(),
         };
@@ -186,141 +138,20 @@ impl NematicBattery {
         })
     }
 
+    /// Charges from `start`, or from each seed.
     fn relax(
         &self,
         settings: &ChargeSettings,
         from: Option<&NematicState>,
         hooks: &mut RunHooks<'_>,
+        checked: bool,
     ) -> Result<ChargedNematic, NematicError> {
         settings.check()?;
-        let clock = CpuClock::start();
-        let kernel = self.kernel::<f64>(&self.charged_surface(), self.accuracy.threads);
-        let order_scale = self.parameters.material.order();
-        let case = format!("{:?} {settings:?}", self.parameters);
-        let mut unfinished = hooks.resume(SCHEMA, &case, |u: &Unfinished| {
-            u.flaw(self, settings.seeds.len(), kernel.array_length())
-        })?;
-        let (mut first, mut best, mut n_steps, mut earlier) = (0, None, 0, 0.0);
-        let (mut stop, mut n_bytes) = ("converged", 0);
-        if let Some(u) = &mut unfinished {
-            (first, best, n_steps, earlier) = (u.seed, u.best.take(), u.n_steps, u.cpu_seconds);
-            n_bytes = u.n_bytes;
-            if !u.is_converged {
-                stop = "step-limit";
-            }
-        }
-        for (index, seed) in settings.seeds.iter().enumerate().skip(first) {
-            let mut relaxation = Relaxation::new(&kernel);
-            let mut last_order = None;
-            match unfinished.take() {
-                Some(u) => {
-                    relaxation.restore(u.q, u.velocity, u.clock);
-                    last_order = u.last_order;
-                }
-                None => {
-                    let start = match from {
-                        Some(state) => state.clone(),
-                        None => self.charge_start(settings, *seed, hooks)?,
-                    };
-                    relaxation.set(start.q_tensor());
-                }
-            }
-            n_bytes = relaxation.n_bytes();
-            let mut rms;
-            loop {
-                rms = relaxation.step();
-                n_steps += 1;
-                let step = relaxation.clock.n_steps;
-                if !rms.is_finite() {
-                    return Err(NematicError::Diverged { step });
-                }
-                // Without any force no step is taken and none will be.
-                if step.is_multiple_of(CHECK_EVERY) || rms == 0.0 {
-                    let order = kernel.tilt(&relaxation.q, order_scale);
-                    let settled = last_order
-                        .is_some_and(|last: f64| (order - last).abs() < settings.order_tolerance);
-                    last_order = Some(order);
-                    hooks.report(&Progress {
-                        phase: Phase::Charge,
-                        step,
-                        time: 0.0,
-                        energy: None,
-                        rms_field: rms,
-                    });
-                    if settled && rms < settings.tolerance {
-                        break;
-                    }
-                } else if step >= settings.max_steps || hooks.is_interrupted() || hooks.is_due() {
-                    let ends = step >= settings.max_steps || hooks.is_interrupted();
-                    if hooks.is_due() {
-                        let record = Unfinished {
-                            seed: index,
-                            best: best.clone(),
-                            q: relaxation.q.clone(),
-                            velocity: relaxation.velocity.clone(),
-                            clock: relaxation.clock,
-                            n_steps,
-                            last_order,
-                            is_converged: stop == "converged",
-                            n_bytes,
-                            cpu_seconds: earlier + clock.seconds(),
-                        };
-                        hooks.save(SCHEMA, &case, &record)?;
-                    }
-                    if ends {
-                        stop = if hooks.is_interrupted() {
-                            "interrupted"
-                        } else {
-                            "step-limit"
-                        };
-                        break;
-                    }
-                }
-            }
-            let energy = kernel.energy(&relaxation.q).total();
-            if best.as_ref().is_none_or(|(least, ..)| energy < *least) {
-                let mut state = self.start(0.0, 0.0)?;
-                kernel.gather(&relaxation.into_q(), state.q_mut());
-                best = Some((energy, state, *seed, rms));
-            }
-            if stop == "interrupted" {
-                break;
-            }
-        }
-        let Some((energy, state, seed, rms_field)) = best else {
-            return Err(NematicError::Diverged { step: 0 });
+        let start = |seed: f64, hooks: &RunHooks<'_>| match from {
+            Some(state) => Ok(state.clone()),
+            None => self.charge_start(settings, seed, hooks),
         };
-        if stop != "interrupted" && first < settings.seeds.len() {
-            // what comes after may be stopped: then the charge is there at once
-            let record = Unfinished {
-                seed: settings.seeds.len(),
-                best: Some((energy, state.clone(), seed, rms_field)),
-                q: Vec::new(),
-                velocity: Vec::new(),
-                clock: Clock::default(),
-                n_steps,
-                last_order: None,
-                is_converged: stop == "converged",
-                n_bytes,
-                cpu_seconds: earlier + clock.seconds(),
-            };
-            hooks.save(SCHEMA, &case, &record)?;
-        }
-        let report = ChargeReport {
-            stop,
-            seed,
-            n_steps,
-            rms_field,
-            energy: kernel.energy_of(&state),
-            order: order_parameter(&state, order_scale),
-            cpu_seconds: earlier + clock.seconds(),
-            bytes: ByteAccount {
-                fields: n_bytes,
-                geometry: kernel.n_bytes(),
-                second: kernel.n_second_bytes(),
-                flow: 0,
-            },
-        };
+        let (state, report) = Charging::new(self, settings, hooks).run(start, checked)?;
         Ok(ChargedNematic {
             battery: self.clone(),
             state,
@@ -362,7 +193,7 @@ impl NematicBattery {
             coarse_start: false,
             ..settings.clone()
         };
-        let charged = coarse.charge(&coarse_settings, &mut hooks.without_files())?;
+        let charged = coarse.relax(&coarse_settings, None, &mut hooks.without_files(), false)?;
         Ok(charged.state.interpolated(&fine))
     }
 }

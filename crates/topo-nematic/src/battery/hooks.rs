@@ -141,6 +141,11 @@ impl<'a> RunHooks<'a> {
         }
     }
 
+    /// Whether there is a file for checkpoints.
+    pub(crate) fn keeps_checkpoints(&self) -> bool {
+        self.checkpoint.is_some()
+    }
+
     /// Whether a checkpoint should be written now.
     pub(crate) fn is_due(&self) -> bool {
         self.checkpoint.is_some() && (self.last.elapsed() >= self.interval || self.is_interrupted())

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 use topo_core::{Counters, DischargeCurve, Ledger, RejectionCounts, StopReason};
 
+use super::minimum::MinimumReport;
 use crate::memory::ByteAccount;
 use crate::{EnergyParts, FlowCounters, OrderParameter, Ring};
 
@@ -24,6 +25,9 @@ pub struct ChargeReport {
     pub energy: EnergyParts,
     /// Order parameter of buckling.
     pub order: OrderParameter,
+    /// Whether the state is a minimum, which files keep on its own; none when it was not relaxed to the end, or when its lowest mode was not found.
+    #[serde(skip)]
+    pub minimum: Option<MinimumReport>,
     /// Processor seconds of the calling thread.
     pub cpu_seconds: f64,
     /// Bytes by component.

@@ -51,6 +51,17 @@ impl<T: Real> Kernel<T> {
         }
     }
 
+    /// Largest Frobenius norm of a tensor of `a`.
+    pub(crate) fn largest(&self, a: &[T]) -> f64 {
+        let components = self.components(a);
+        let square = |cell: usize| {
+            let tensor = components.map(|x| x[cell].into());
+            contract(&tensor, &tensor)
+        };
+        let cells = 0..self.domain.grid.n_cells();
+        cells.map(square).fold(0.0, f64::max).sqrt()
+    }
+
     /// Root mean square over the field of the tensor sum of factors times arrays.
     pub(crate) fn rms<const N: usize>(&self, arrays: [(f64, &[T]); N]) -> f64 {
         let n = self.domain.grid.n_cells();

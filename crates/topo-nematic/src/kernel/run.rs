@@ -76,6 +76,27 @@ impl<T: Real> Kernel<T> {
         }
     }
 
+    /// The kernel of small changes of a field in equilibrium, elastic terms only: linear, and zero on all surfaces.
+    pub(crate) fn elastic_part(&self) -> Self {
+        let mut part = self.clone();
+        for wall in part.domain.walls.iter_mut().flatten().flatten() {
+            wall.values = vec![[0.0; 5]];
+        }
+        for special in &mut part.domain.special {
+            (special.source, special.offset) = ([0.0; 5], 0.0);
+        }
+        part.material = Material {
+            a: 0.0,
+            b: 0.0,
+            c: 0.0,
+            ..self.material
+        };
+        part.field = [0.0; 5];
+        part.coefficients =
+            Coefficients::new(&part.material, part.domain.grid.spacing(), &part.field);
+        part
+    }
+
     /// The same kernel on arrays without gaps between components, as the flow reads them.
     pub(crate) fn without_gaps(mut self) -> Self {
         self.stride = self.domain.grid.n_cells();
@@ -154,19 +175,29 @@ impl<T: Real> Kernel<T> {
         what: &Combination<'_, T, INPUTS>,
         out: &mut [T],
     ) -> Sums {
-        let grid = &self.domain.grid;
         let n = self.stride;
         debug_assert!(q.len() == 5 * n && out.len() == 5 * n);
-        let [nx, ny, nz] = grid.cells();
+        self.by_planes(out, |k, out, ghosts| {
+            dispatch!(self.level, simd => self.plane::<_, OLD, INPUTS, SUMS>(simd, k, q, what, out, ghosts))
+        })
+    }
+
+    /// Calls `work` with each plane of cells, its part of `out` and scratch memory; the sums are the same for any number of threads.
+    pub(crate) fn by_planes(
+        &self,
+        out: &mut [T],
+        work: impl Fn(usize, [&mut [T]; 5], &mut Vec<T>) -> Sums + Sync,
+    ) -> Sums {
+        let [nx, ny, nz] = self.domain.grid.cells();
         let plane = nx * ny;
         let [a, b, c, d, e] = self.components_mut(out);
         let mut sums = vec![[0.0; 4]; nz];
-        let work = |(k, (sum, out)): (usize, (&mut Sums, [&mut [T]; 5])), ghosts: &mut Vec<T>| {
-            *sum = dispatch!(self.level, simd => self.plane::<_, OLD, INPUTS, SUMS>(simd, k, q, what, out, ghosts));
+        let work = |(k, (sum, out)): (usize, (&mut Sums, [&mut [T]; 5])), scratch: &mut Vec<T>| {
+            *sum = work(k, out, scratch);
         };
         match self.threads {
             Threads::One => {
-                let mut ghosts = Vec::new();
+                let mut scratch = Vec::new();
                 let chunks = a
                     .chunks_mut(plane)
                     .zip(b.chunks_mut(plane))
@@ -174,7 +205,7 @@ impl<T: Real> Kernel<T> {
                     .zip(e.chunks_mut(plane))
                     .map(|(((a, b), (c, d)), e)| [a, b, c, d, e]);
                 for item in sums.iter_mut().zip(chunks).enumerate() {
-                    work(item, &mut ghosts);
+                    work(item, &mut scratch);
                 }
             }
             Threads::All => {
@@ -187,7 +218,7 @@ impl<T: Real> Kernel<T> {
                 sums.par_iter_mut()
                     .zip(chunks)
                     .enumerate()
-                    .for_each_init(Vec::new, |ghosts, item| work(item, ghosts));
+                    .for_each_init(Vec::new, |scratch, item| work(item, scratch));
             }
         }
         // In the order of planes, whoever worked on them.

@@ -9,7 +9,7 @@ use crate::tensor::{Tensor5, contract, uniaxial};
 use crate::{Faces, Grid, Material, Particle};
 
 /// A reproducible field without any symmetry.
-fn rough<T: Real>(n: usize) -> Vec<T> {
+pub(crate) fn rough<T: Real>(n: usize) -> Vec<T> {
     let mut state = 12345_u64;
     (0..5 * n)
         .map(|_| {
@@ -22,14 +22,14 @@ fn rough<T: Real>(n: usize) -> Vec<T> {
 }
 
 #[derive(Clone, Copy, PartialEq)]
-enum Ball {
+pub(crate) enum Ball {
     None,
     Cut(Boundary),
     Free(FreeSurface),
 }
 
 /// A kernel with walls along the axes marked: strong, weak, with values that differ from face to face.
-fn kernel_with<T: Real>(
+pub(crate) fn kernel_with<T: Real>(
     second: bool,
     cells: [usize; 3],
     walled: [bool; 3],
@@ -102,7 +102,7 @@ fn field_of<T: Real>(kernel: &Kernel<T>, q: &[T]) -> Vec<T> {
     h
 }
 
-const CASES: [([usize; 3], [bool; 3], Ball); 6] = [
+pub(crate) const CASES: [([usize; 3], [bool; 3], Ball); 6] = [
     (
         [13, 12, 14],
         [false, false, true],

@@ -1,0 +1,83 @@
+//! What of a charge is kept from moment to moment, and whether a checkpoint fits.
+
+use serde::{Deserialize, Serialize};
+
+use super::MOST_KICKS;
+use crate::NematicState;
+use crate::battery::NematicBattery;
+use crate::battery::hooks::MOST_COUNTED;
+use crate::battery::minimum::MinimumReport;
+use crate::relax::Clock;
+
+/// The best state so far.
+#[derive(Clone, Serialize, Deserialize)]
+pub(super) struct Best {
+    pub energy: f64,
+    pub state: NematicState,
+    pub seed: f64,
+    pub rms_field: f64,
+}
+
+/// A relaxation in progress.
+#[derive(Clone, Serialize, Deserialize)]
+pub(super) struct Moving {
+    pub q: Vec<f64>,
+    pub velocity: Vec<f64>,
+    pub clock: Clock,
+    pub last_order: Option<f64>,
+}
+
+/// What of a charge is kept from moment to moment.
+#[derive(Clone, Default, Serialize, Deserialize)]
+pub(super) struct Progressed {
+    /// Start fields gone through.
+    pub seed: usize,
+    pub n_kicks: u32,
+    pub best: Option<Best>,
+    pub minimum: Option<MinimumReport>,
+    pub n_steps: u64,
+    pub n_products: u64,
+    pub has_reached_limit: bool,
+    pub n_bytes: u64,
+    pub cpu_seconds: f64,
+}
+
+/// A charge on its way; one that is done has gone through all seeds and its check.
+#[derive(Serialize, Deserialize)]
+pub(super) struct Unfinished {
+    pub progressed: Progressed,
+    pub moving: Option<Moving>,
+}
+
+impl Unfinished {
+    /// What does not fit a charge with so many seeds, on arrays of this length.
+    pub fn flaw(
+        &self,
+        battery: &NematicBattery,
+        n_seeds: usize,
+        length: usize,
+    ) -> Option<&'static str> {
+        let whole = |x: &[f64]| x.len() == length && x.iter().all(|x| x.is_finite());
+        let kept = |best: &Best| {
+            let numbers = [best.energy, best.seed, best.rms_field];
+            numbers.iter().all(|x| x.is_finite())
+                && *best.state.grid() == battery.grid
+                && best.state.particle().copied() == battery.particle
+        };
+        let moves = |m: &Moving| whole(&m.q) && whole(&m.velocity) && m.clock.is_sound();
+        let p = &self.progressed;
+        let through = p.seed >= n_seeds;
+        let found = |m: &MinimumReport| m.lowest_eigenvalue.is_finite() && m.residual.is_finite();
+        if p.seed > n_seeds || (through && p.best.is_none()) || p.n_kicks > MOST_KICKS {
+            Some("it has gone through other start fields")
+        } else if !p.best.iter().all(kept) || !p.minimum.iter().all(found) {
+            Some("the best state is one of another battery")
+        } else if !self.moving.iter().all(moves) || (!through && self.moving.is_none()) {
+            Some("the relaxation is one of another battery")
+        } else if p.n_steps.max(p.n_products) >= MOST_COUNTED || !p.cpu_seconds.is_finite() {
+            Some("a counter is out of range")
+        } else {
+            None
+        }
+    }
+}

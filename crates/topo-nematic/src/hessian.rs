@@ -1,0 +1,206 @@
+//! The second derivative of the energy at a state, applied to small changes of it.
+
+mod lanczos;
+mod start;
+mod tridiagonal;
+
+pub(crate) use lanczos::{Accuracy, LowestMode};
+
+use fearless_simd::{Simd, dispatch};
+
+use crate::kernel::run::{Combination, Kernel};
+use crate::tensor::{Tensor5, contract};
+
+/// The Hessian of the energy at a state: minus the derivative of the molecular field.
+///
+/// ```math
+/// A P = -\frac{dH}{dQ} P = -L \nabla^2 P + A P + B\,(QP + PQ)_{tr} + C\,[2 (Q:P)\, Q + (Q:Q)\, P]
+/// ```
+///
+/// It is symmetric in the inner product of the gradient flow, the sum over cells of mass times P:P'. A small change along an
+/// eigenvector decays at Gamma times its eigenvalue, whose unit is L/xi_N². The derivative is exact, not a difference of fields: the
+/// elastic part is linear and the bulk part a cubic, so that one pass does where differences need two.
+///
+/// # Validation
+/// `hessian_is_the_derivative_of_the_molecular_field`
+pub(crate) struct Hessian<'a> {
+    /// The elastic part, zero on all surfaces.
+    elastic: Kernel<f64>,
+    /// The kernel at whose state the derivative is taken.
+    kernel: &'a Kernel<f64>,
+    /// The state, in the kernel's layout.
+    q: &'a [f64],
+}
+
+impl<'a> Hessian<'a> {
+    /// The Hessian at `q`, in the kernel's layout.
+    pub(crate) fn new(kernel: &'a Kernel<f64>, q: &'a [f64]) -> Self {
+        Self {
+            elastic: kernel.elastic_part(),
+            kernel,
+            q,
+        }
+    }
+
+    /// Writes A `p` to `out`, which must be zero where there is no field, and gives the inner product of `p` with it.
+    pub(crate) fn apply(&self, p: &[f64], out: &mut [f64]) -> f64 {
+        let what = Combination {
+            on_q: 0.0,
+            on_old: 0.0,
+            on_field: -1.0,
+            inputs: [],
+            relaxing: false,
+        };
+        self.elastic.combine::<false, 0, false>(p, &what, out);
+        self.elastic.add_second(p, -1.0, out);
+        self.add_bulk(p, out)
+    }
+
+    /// Adds the bulk part to `out` and gives the inner product of `p` with the sum.
+    fn add_bulk(&self, p: &[f64], out: &mut [f64]) -> f64 {
+        let kernel = self.kernel;
+        let m = kernel.material();
+        let bulk = [m.a, m.b, m.c];
+        let (q, p) = (kernel.components(self.q), kernel.components(p));
+        let plane_size = self.plane_size();
+        let sums = kernel.by_planes(out, |k, mut out, _| {
+            let first = k * plane_size;
+            let mut sum = 0.0;
+            for run in kernel.domain.runs_of(k) {
+                let (from, to) = (run.start as usize, (run.start + run.length) as usize);
+                let (q, p) = (q.map(|x| &x[from..to]), p.map(|x| &x[from..to]));
+                let out = out.each_mut().map(|x| &mut x[from - first..to - first]);
+                sum += dispatch!(kernel.level(), simd => add_to_run(simd, bulk, q, p, out));
+            }
+            for special in kernel.domain.special_of(k) {
+                let cell = special.cell as usize;
+                let (q, p) = (q.map(|x| x[cell]), p.map(|x| x[cell]));
+                let share = special.volume / special.mass;
+                let part = bulk_part(bulk, &q, &p);
+                let all: Tensor5 = std::array::from_fn(|c| {
+                    let to = &mut out[c][cell - first];
+                    *to += share * part[c];
+                    *to
+                });
+                sum += special.mass * contract(&p, &all);
+            }
+            [sum, 0.0, 0.0, 0.0]
+        });
+        sums[0]
+    }
+
+    /// old <- on_p `p` + on_out `out` + on_old old; gives the square of the norm of what results.
+    pub(crate) fn combine(
+        &self,
+        (on_p, p): (f64, &[f64]),
+        (on_out, out): (f64, &[f64]),
+        on_old: f64,
+        old: &mut [f64],
+    ) -> f64 {
+        let kernel = self.kernel;
+        let factors = [on_p, on_out, on_old];
+        let (p, out) = (kernel.components(p), kernel.components(out));
+        let plane_size = self.plane_size();
+        let sums = kernel.by_planes(old, |k, mut old, _| {
+            let first = k * plane_size;
+            let mut sum = 0.0;
+            for run in kernel.domain.runs_of(k) {
+                let (from, to) = (run.start as usize, (run.start + run.length) as usize);
+                let (p, out) = (p.map(|x| &x[from..to]), out.map(|x| &x[from..to]));
+                let old = old.each_mut().map(|x| &mut x[from - first..to - first]);
+                sum += dispatch!(kernel.level(), simd => combine_run(simd, factors, p, out, old));
+            }
+            for special in kernel.domain.special_of(k) {
+                let cell = special.cell as usize;
+                let new: Tensor5 = std::array::from_fn(|c| {
+                    let to = &mut old[c][cell - first];
+                    *to = on_p * p[c][cell] + on_out * out[c][cell] + on_old * *to;
+                    *to
+                });
+                sum += special.mass * contract(&new, &new);
+            }
+            [sum, 0.0, 0.0, 0.0]
+        });
+        sums[0]
+    }
+
+    fn plane_size(&self) -> usize {
+        let [nx, ny, _] = self.kernel.domain.grid.cells();
+        nx * ny
+    }
+}
+
+/// The derivative of the bulk part along `p`, with its three constants.
+#[inline(always)]
+fn bulk_part([a, b, c]: [f64; 3], q: &Tensor5, p: &Tensor5) -> Tensor5 {
+    let (qq, qp) = (contract(q, q), contract(q, p));
+    let third = 2.0 * qp / 3.0;
+    // twice the traceless part of QP made symmetric
+    let product = [
+        2.0 * (q[0] * p[0] + q[1] * p[1] + q[2] * p[2]) - third,
+        q[1] * (p[0] + p[3]) + p[1] * (q[0] + q[3]) + q[2] * p[4] + p[2] * q[4],
+        q[1] * p[4] + p[1] * q[4] - q[2] * p[3] - p[2] * q[3],
+        2.0 * (q[1] * p[1] + q[3] * p[3] + q[4] * p[4]) - third,
+        q[1] * p[2] + p[1] * q[2] - q[4] * p[0] - p[4] * q[0],
+    ];
+    std::array::from_fn(|i| (a + c * qq) * p[i] + b * product[i] + 2.0 * c * qp * q[i])
+}
+
+/// Sums side by side, so that additions need not wait for each other.
+const WIDTH: usize = 8;
+
+#[inline(always)]
+fn add_to_run<S: Simd>(
+    _simd: S,
+    bulk: [f64; 3],
+    q: [&[f64]; 5],
+    p: [&[f64]; 5],
+    mut out: [&mut [f64]; 5],
+) -> f64 {
+    let n = q[0].len();
+    let (q, p) = (q.map(|x| &x[..n]), p.map(|x| &x[..n]));
+    let mut sums = [0.0; WIDTH];
+    let mut cell = |i: usize, sum: &mut f64| {
+        let (q, p) = (q.map(|x| x[i]), p.map(|x| x[i]));
+        let part = bulk_part(bulk, &q, &p);
+        let all: Tensor5 = std::array::from_fn(|c| out[c][i] + part[c]);
+        (0..5).for_each(|c| out[c][i] = all[c]);
+        *sum += contract(&p, &all);
+    };
+    for start in (0..n - n % WIDTH).step_by(WIDTH) {
+        for (lane, sum) in sums.iter_mut().enumerate() {
+            cell(start + lane, sum);
+        }
+    }
+    (n - n % WIDTH..n).for_each(|i| cell(i, &mut sums[0]));
+    sums.iter().sum()
+}
+
+#[inline(always)]
+fn combine_run<S: Simd>(
+    _simd: S,
+    [on_p, on_out, on_old]: [f64; 3],
+    p: [&[f64]; 5],
+    out: [&[f64]; 5],
+    mut old: [&mut [f64]; 5],
+) -> f64 {
+    let n = p[0].len();
+    let (p, out) = (p.map(|x| &x[..n]), out.map(|x| &x[..n]));
+    let mut sums = [0.0; WIDTH];
+    let mut cell = |i: usize, sum: &mut f64| {
+        let new: Tensor5 =
+            std::array::from_fn(|c| on_p * p[c][i] + on_out * out[c][i] + on_old * old[c][i]);
+        (0..5).for_each(|c| old[c][i] = new[c]);
+        *sum += contract(&new, &new);
+    };
+    for start in (0..n - n % WIDTH).step_by(WIDTH) {
+        for (lane, sum) in sums.iter_mut().enumerate() {
+            cell(start + lane, sum);
+        }
+    }
+    (n - n % WIDTH..n).for_each(|i| cell(i, &mut sums[0]));
+    sums.iter().sum()
+}
+
+#[cfg(test)]
+mod tests;
