@@ -39,14 +39,8 @@ fn elastic(c: &mut Criterion) {
         twist: Some(1.0),
         ..RodParameters::default()
     };
-    let battery = RodBattery::new(
-        &parameters,
-        &Accuracy::default(),
-        Guards::default(),
-        &curve,
-        45.0,
-    )
-    .expect("default parameters");
+    let battery = RodBattery::new(&parameters, &Accuracy::default(), Guards::default(), &curve)
+        .expect("default parameters");
     let brief = ChargeSettings {
         duration: 0.02,
         ..ChargeSettings::default()

@@ -33,10 +33,9 @@ fn rod() -> RodParameters {
 
 /// Charge and most of the discharge of a rod.
 fn run_rod(parameters: &RodParameters, curve: &Polyline) -> (PhaseReport, Discharge) {
-    let ropelength = curve.length() / topo_knots::thickness(curve).tau;
     let accuracy = Accuracy::default();
     let guards = Guards::default();
-    let battery = RodBattery::new(parameters, &accuracy, guards, curve, ropelength).unwrap();
+    let battery = RodBattery::new(parameters, &accuracy, guards, curve).unwrap();
     let interrupt = Interrupt::new();
     let charge = ChargeSettings {
         duration: 0.2,

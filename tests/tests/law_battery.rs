@@ -13,7 +13,7 @@ fn battery(curve: &Polyline, parameters: RodParameters, tolerance: f64) -> RodBa
         tolerance,
         ..Default::default()
     };
-    RodBattery::new(&parameters, &accuracy, Guards::default(), curve, 45.0).unwrap()
+    RodBattery::new(&parameters, &accuracy, Guards::default(), curve).unwrap()
 }
 
 fn twisted(n_edges: usize, twist: f64) -> RodParameters {
@@ -129,7 +129,7 @@ fn law_mirror_image_with_opposite_twist_has_the_same_energy() {
     // and the other twist is another battery
     let other = run(&curve, -1.5);
     assert!(
-        (other.start / ours.start - 1.0).abs() > 1e-3,
+        (other.after_cut / ours.after_cut - 1.0).abs() > 1e-3,
         "the trefoil does not see handedness"
     );
 }
@@ -209,14 +209,8 @@ fn law_forced_crossing_is_caught_by_the_certificate() {
         max_steps: 20_000,
         ..Default::default()
     };
-    let battery = RodBattery::new(
-        &parameters,
-        &accuracy,
-        Guards::default(),
-        &start_trefoil(),
-        45.0,
-    )
-    .unwrap();
+    let battery =
+        RodBattery::new(&parameters, &accuracy, Guards::default(), &start_trefoil()).unwrap();
     let run = charged(&battery, 20.0);
     let report = &run.record().report;
     println!(
@@ -238,14 +232,8 @@ fn law_forced_crossing_is_caught_by_the_certificate() {
         contact: Some(ContactParameters::default()),
         ..parameters
     };
-    let battery = RodBattery::new(
-        &parameters,
-        &accuracy,
-        Guards::default(),
-        &start_trefoil(),
-        45.0,
-    )
-    .unwrap();
+    let battery =
+        RodBattery::new(&parameters, &accuracy, Guards::default(), &start_trefoil()).unwrap();
     let report = charged(&battery, 2.0).record().report.clone();
     assert!(report.stop.is_success(), "{}", report.stop);
 }
@@ -337,7 +325,6 @@ fn law_integrators_agree() {
             &accuracy,
             Guards::default(),
             &start_trefoil(),
-            45.0,
         );
         discharge(&battery.unwrap(), 0.2, 0.2)
     };

@@ -60,8 +60,7 @@ impl Case {
             ..Default::default()
         };
         let curve = trefoil(400, 2.0, 1.0);
-        let battery =
-            RodBattery::new(&parameters, &accuracy, Guards::default(), &curve, 45.0).unwrap();
+        let battery = RodBattery::new(&parameters, &accuracy, Guards::default(), &curve).unwrap();
         let mut charge = ChargeSettings::default();
         let mut settings = DischargeSettings::default();
         if let Some(duration) = duration {
@@ -284,7 +283,7 @@ fn bounced(contact: f64, guards: Guards, max_steps: u64) -> (f64, Discharge) {
         duration: 0.2,
         ..Default::default()
     };
-    let run = RodBattery::new(&parameters, &accuracy, guards, &curve, 46.0)
+    let run = RodBattery::new(&parameters, &accuracy, guards, &curve)
         .and_then(|battery| battery.charge(&charge, &Interrupt::new()))
         .and_then(|charged| charged.cut(CutSite::MaximumEnergyDensity))
         .and_then(|cut| cut.discharge(&DischargeSettings::default(), &Interrupt::new()))
@@ -346,7 +345,7 @@ fn any_reading() -> impl Strategy<Value = Reading> {
 
 prop_compose! {
     fn any_parameters()(
-        numbers in prop::array::uniform6(any_number()),
+        numbers in prop::array::uniform5(any_number()),
         reading in any_reading(),
         n_edges in 0usize..80,
         twist in prop::option::of(any_number()),
@@ -357,9 +356,9 @@ prop_compose! {
             Just(FrictionRange::Contact),
             any_number().prop_map(FrictionRange::TimesContact),
         ],
-    ) -> (RodParameters, f64) {
-        let [slenderness, twist_ratio, stretch_ratio, stiffness, ratio, ropelength] = numbers;
-        let parameters = RodParameters {
+    ) -> RodParameters {
+        let [slenderness, twist_ratio, stretch_ratio, stiffness, ratio] = numbers;
+        RodParameters {
             slenderness,
             reading,
             n_edges,
@@ -368,18 +367,12 @@ prop_compose! {
             twist,
             contact: has_contact.then_some(ContactParameters { stiffness }),
             friction: has_friction.then_some(FrictionParameters { ratio, range }),
-        };
-        (parameters, ropelength)
+        }
     }
 }
 
 /// Builds a battery and, if it can be built, charges and discharges it for a few dozen steps; returns whether it ran.
-fn survives(
-    parameters: &RodParameters,
-    accuracy: &Accuracy,
-    ropelength: f64,
-    knotted: bool,
-) -> bool {
+fn survives(parameters: &RodParameters, accuracy: &Accuracy, knotted: bool) -> bool {
     let curve = if knotted {
         trefoil(60, 2.0, 1.0)
     } else {
@@ -387,8 +380,7 @@ fn survives(
             nalgebra::Vector3::new(u.cos(), 0.5 * u.sin(), 0.2 * (2.0 * u).cos())
         })
     };
-    let Ok(battery) = RodBattery::new(parameters, accuracy, Guards::default(), &curve, ropelength)
-    else {
+    let Ok(battery) = RodBattery::new(parameters, accuracy, Guards::default(), &curve) else {
         return false;
     };
     let settings = ChargeSettings {
@@ -424,7 +416,7 @@ proptest! {
     /// No number in the parameters makes a rod panic, give NaN or never end.
     #[test]
     fn law_any_parameters_are_refused_or_run(
-        (parameters, ropelength) in any_parameters(),
+        parameters in any_parameters(),
         tolerance in any_number(),
         skin in any_number(),
         gamma in any_number(),
@@ -432,8 +424,8 @@ proptest! {
     ) {
         let wild = Accuracy { tolerance, skin, gamma, max_steps: 60, ..Default::default() };
         let tame = Accuracy { max_steps: 60, ..Default::default() };
-        survives(&parameters, &wild, ropelength, knotted);
-        survives(&parameters, &tame, 45.0, knotted);
+        survives(&parameters, &wild, knotted);
+        survives(&parameters, &tame, knotted);
     }
 
     /// Numbers that are in range are accepted and run.
@@ -457,6 +449,6 @@ proptest! {
             ..Default::default()
         };
         let accuracy = Accuracy { max_steps: 60, ..Default::default() };
-        prop_assert!(survives(&parameters, &accuracy, 45.0, knotted));
+        prop_assert!(survives(&parameters, &accuracy, knotted));
     }
 }

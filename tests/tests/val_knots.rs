@@ -77,19 +77,13 @@ fn long_thin_trefoil_is_the_doubly_covered_circle() {
 }
 
 /// Elastic energy of a knot of the table charged at the twist θ'.
-fn charged_energy(curve: &Polyline, ropelength: f64, n_edges: usize, twist: f64) -> f64 {
+fn charged_energy(curve: &Polyline, n_edges: usize, twist: f64) -> f64 {
     let parameters = RodParameters {
         n_edges,
         twist: Some(twist),
         ..Default::default()
     };
-    let battery = RodBattery::new(
-        &parameters,
-        &Accuracy::default(),
-        Guards::default(),
-        curve,
-        ropelength,
-    );
+    let battery = RodBattery::new(&parameters, &Accuracy::default(), Guards::default(), curve);
     let run = battery
         .unwrap()
         .charge(&ChargeSettings::default(), &Interrupt::new())
@@ -110,14 +104,13 @@ fn flipped(curve: &Polyline) -> Polyline {
 
 /// Charged energies at the twists θ' and −θ'; of the mirror image too when `images` is 2, and then the lower of both.
 fn check_achiral(name: &str, n_edges: usize, images: usize, tolerance: f64) {
-    let start = tight(name).centreline(n_edges).unwrap();
+    let start = tight(name).centreline().unwrap();
     let energy = |twist: f64| {
-        let plain = charged_energy(&start.curve, start.ropelength, n_edges, twist);
+        let plain = charged_energy(&start, n_edges, twist);
         if images == 1 {
             return plain;
         }
-        let image = flipped(&start.curve);
-        plain.min(charged_energy(&image, start.ropelength, n_edges, twist))
+        plain.min(charged_energy(&start.mirrored(), n_edges, twist))
     };
     for twist in [0.5, 1.0, 2.0] {
         let (plus, minus) = (energy(twist), energy(-twist));

@@ -32,14 +32,14 @@ fn check_discharges(names: &[&str], n_edges: usize) {
     };
     for name in names {
         let tight = tighten_entry(table.get(name).unwrap(), &quick).unwrap();
-        let line = tight.centreline(n_edges).unwrap();
+        let line = tight.centreline().unwrap();
         let parameters = RodParameters {
             n_edges,
             twist: Some(1.0),
             ..Default::default()
         };
         let (accuracy, guards) = (Accuracy::default(), Guards::default());
-        let battery = RodBattery::new(&parameters, &accuracy, guards, &line.curve, line.ropelength);
+        let battery = RodBattery::new(&parameters, &accuracy, guards, &line);
         let battery = battery.unwrap();
         let diameter = battery.tube().contact_diameter;
         let run = discharge(&battery, 1.0, LONGEST);

@@ -39,7 +39,7 @@ pub enum Command {
   cargo xtask run scenes/nematic-desk.toml --budget \"10 min\"
   cargo xtask run scenes/nematic-quick.toml --fields --out fields    with files for `cargo xtask export`")]
     Run(RunArgs),
-    /// Measure the error of discharge times: 34 fixed cases against finer runs of the same cuts.
+    /// Measure the error of discharge times: 35 fixed cases against finer runs of the same cuts, or the exact discharge where that is known.
     #[command(after_help = "Examples:
   cargo xtask accuracy                       the draft preset
   cargo xtask accuracy --quality standard")]

@@ -32,8 +32,7 @@ impl Case {
 
     /// Folder of the case inside `elastic/`.
     pub fn folder(&self) -> String {
-        let c = self.first();
-        format!("{}_twist{:+.2}_{}_n{}", c.knot, c.twist, c.reading, c.edges)
+        self.first().case.clone()
     }
 
     /// Mean, smallest and largest of a time over the cuts that have it.
@@ -131,11 +130,11 @@ impl Sweep {
 mod tests {
     use super::*;
 
-    const HEADER: &str = "knot,twist,cut,reading,edges,energy,bend,twist_energy,stretch,writhe,total_twist,t50,t90,t95,t99,t_untie,link_drift,min_distance_over_contact,steps,rejected,cpu_seconds,warnings";
+    const HEADER: &str = "case,knot,twist,cut,reading,edges,energy,bend,twist_energy,stretch,writhe,total_twist,t50,t90,t95,t99,t50_after_cut,t90_after_cut,t95_after_cut,t99_after_cut,t_untie,link_drift,min_distance_over_contact,steps,rejected,cpu_seconds,warnings";
 
     fn row(knot: &str, twist: f64, reading: &str, t99: &str) -> String {
         format!(
-            "{knot},{twist},0.1,{reading},200,1,0.5,0.4,0.1,3.4,1,0.5,1,2,{t99},,1e-12,0.98,100,2,0.5,"
+            "{knot}_twist{twist:+.2}_{reading}_n200,{knot},{twist},0.1,{reading},200,1,0.5,0.4,0.1,3.4,1,0.5,1,2,{t99},0.5,1,2,{t99},,1e-12,0.98,100,2,0.5,"
         )
     }
 

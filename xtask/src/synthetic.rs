@@ -97,6 +97,7 @@ fn cut(knot: &str, k: usize, twist: f64, c: usize) -> Cut {
     let t99 =
         19.0 * slow / (1.0 + 1.6 * twist * twist) * (1.0 + 0.5 * c as f64) + 1.9 + 0.1 * twist;
     Cut {
+        case: format!("{knot}_twist{twist:+.2}_shrunk_n{N}"),
         knot: knot.to_owned(),
         twist,
         cut: 0.1 + 0.3 * c as f64,
@@ -112,6 +113,10 @@ fn cut(knot: &str, k: usize, twist: f64, c: usize) -> Cut {
         t90: Some(t99 / 3.0),
         t95: Some(t99 / 2.0),
         t99: Some(t99),
+        t50_after_cut: Some(t99 / 12.0),
+        t90_after_cut: Some(t99 / 3.0),
+        t95_after_cut: Some(t99 / 2.0),
+        t99_after_cut: Some(t99),
         t_untie: Some(t99 / 4.0),
         link_drift: Some(1e-12),
         min_distance_over_contact: Some(0.97),
@@ -123,11 +128,7 @@ fn cut(knot: &str, k: usize, twist: f64, c: usize) -> Cut {
 }
 
 fn case(folder: &Path, k: usize, cut: &Cut, curve: &[Vector3<f64>]) {
-    let name = format!(
-        "{}_twist{:+.2}_{}_n{}",
-        cut.knot, cut.twist, cut.reading, cut.edges
-    );
-    let folder = folder.join("elastic").join(name);
+    let folder = folder.join("elastic").join(&cut.case);
     let density = |i: usize| {
         let a = i as f64 / N as f64 * TAU;
         0.3 * cut.twist * cut.twist

@@ -12,7 +12,7 @@ mod scene;
 mod sweep;
 
 pub use accuracy::{ACCURACY_CASES, AccuracyRow, measure_accuracy, reference_scene};
-pub(crate) use accuracy::{MeasuredDischarge, measured_discharge};
+pub(crate) use accuracy::{MeasuredDischarge, exact_discharge, measured_discharge};
 pub(crate) use case::CaseJob;
 pub use case::RESULTS_VERSION;
 pub use choices::{Cuts, NEAR_TIE, Names, Numbers, Preset};

@@ -10,6 +10,8 @@ use crate::AnalysisError;
 /// One discharge: energies in E_0 = E_b h² L, times in T_0 = 2 L η/(h E_b), L the row's own length.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct SweepRow {
+    /// Folder of the case beside the table.
+    pub case: String,
     /// Knot type.
     pub knot: String,
     /// θ'h tied in before the ends were fused.
@@ -32,7 +34,7 @@ pub struct SweepRow {
     pub writhe: f64,
     /// Total twist after charging, in turns.
     pub total_twist: f64,
-    /// Time at which half of the elastic energy after the cut was released.
+    /// Time at which half of the elastic energy before the cut was released; 0 if the cut itself did.
     pub t50: Option<f64>,
     /// Same for 90 %.
     pub t90: Option<f64>,
@@ -40,6 +42,14 @@ pub struct SweepRow {
     pub t95: Option<f64>,
     /// Same for 99 %.
     pub t99: Option<f64>,
+    /// Time at which half of the elastic energy that the cut left was released.
+    pub t50_after_cut: Option<f64>,
+    /// Same for 90 %.
+    pub t90_after_cut: Option<f64>,
+    /// Same for 95 %.
+    pub t95_after_cut: Option<f64>,
+    /// Same for 99 %.
+    pub t99_after_cut: Option<f64>,
     /// Time of the last change of the knot type to the unknot; empty if not seen.
     pub t_untie: Option<f64>,
     /// Largest |Δ(Tw + Wr)| while closed, in turns.
@@ -180,7 +190,7 @@ mod tests {
         let text = std::fs::read_to_string(&path).unwrap();
         assert_eq!(
             text.lines().next().unwrap(),
-            "knot,twist,cut,reading,edges,energy,bend,twist_energy,stretch,writhe,total_twist,t50,t90,t95,t99,t_untie,link_drift,min_distance_over_contact,steps,rejected,cpu_seconds,warnings"
+            "case,knot,twist,cut,reading,edges,energy,bend,twist_energy,stretch,writhe,total_twist,t50,t90,t95,t99,t50_after_cut,t90_after_cut,t95_after_cut,t99_after_cut,t_untie,link_drift,min_distance_over_contact,steps,rejected,cpu_seconds,warnings"
         );
         let path = folder.path().join("table.csv");
         write_table(&path, &[KnotRow::default()]).unwrap();

@@ -94,6 +94,15 @@ impl Timeline {
         })
     }
 
+    /// The timeline of the mirror image.
+    #[must_use]
+    pub fn mirrored(mut self, table: &KnotTable) -> Self {
+        for sample in &mut self.samples {
+            sample.knot = table.mirror_label(&sample.knot);
+        }
+        self
+    }
+
     /// The typed samples in time.
     pub fn samples(&self) -> &[TypedSample] {
         &self.samples

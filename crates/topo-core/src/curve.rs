@@ -1,9 +1,15 @@
-//! Curves in space: the polyline, its writhe, smoothing and resampling.
+//! Curves in space: the polyline, its writhe, its thickness, smoothing and resampling.
 
 mod polyline;
 mod resample;
+mod segment;
 mod spline;
+mod thickness;
 mod writhe;
 
 pub use polyline::Polyline;
+pub use segment::closest_points;
+pub use thickness::{
+    Thickness, thickness, thickness_brute_force, vertex_radius, windowed_half_distance,
+};
 pub use writhe::{average_crossing_number, writhe};

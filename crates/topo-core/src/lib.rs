@@ -30,7 +30,10 @@ pub use check::{
 pub use checkpoint::{checkpoint_bytes, load_checkpoint, parse_checkpoint, save_checkpoint};
 pub use control::{Rejection, RejectionCounts, StepControl};
 pub use cpu::CpuClock;
-pub use curve::{Polyline, average_crossing_number, writhe};
+pub use curve::{
+    Polyline, Thickness, average_crossing_number, closest_points, thickness, thickness_brute_force,
+    vertex_radius, windowed_half_distance, writhe,
+};
 pub use discharge::{DischargeCurve, DischargeError};
 pub use error::{CurveError, SparseError};
 pub use file::{FileError, write_atomic, write_atomic_bytes};

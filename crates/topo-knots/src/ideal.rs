@@ -14,7 +14,7 @@ const SCHEMA: &str = "tight-knot/1";
 /// The tight shape of a knot: from the folder `cache` if it is there and sound, else computed and kept there.
 ///
 /// The file's name holds a hash of the entry, the settings and the version of the method. A file that cannot be read, is
-/// truncated or corrupt is computed again and replaced.
+/// truncated or corrupt is computed again and replaced. A mirror image is made from the file of the knot itself.
 ///
 /// # Errors
 /// As [`tighten_entry`], and [`KnotError::File`] if the result cannot be written.
@@ -29,6 +29,9 @@ pub fn ideal(
     let Some(folder) = cache else {
         return tighten_entry(entry, settings);
     };
+    if entry.is_mirror_image() {
+        return Ok(ideal(&entry.mirror(), settings, cache)?.mirror());
+    }
     let path = cache_path(folder, entry, settings);
     if let Ok(tight) = load_checkpoint::<TightKnot>(&path, SCHEMA) {
         return Ok(tight);
@@ -45,6 +48,9 @@ pub fn ideal(
 
 /// Whether [`ideal`] would find the shape in the folder `cache`.
 pub fn is_kept(entry: &KnotEntry, settings: &TightenSettings, cache: &Path) -> bool {
+    if entry.is_mirror_image() {
+        return is_kept(&entry.mirror(), settings, cache);
+    }
     cache_path(cache, entry, settings).exists()
 }
 

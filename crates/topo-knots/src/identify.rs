@@ -8,7 +8,7 @@ mod reduce;
 use serde::{Deserialize, Serialize};
 
 use crate::invariant::{Diagram, least_crossing, usable_vertices};
-use crate::{Invariants, Jones, KnotError, KnotTable, V};
+use crate::{Invariants, Jones, KnotError, KnotTable, V, mirror_name};
 use known::{Finding, matches};
 use reduce::Reducer;
 
@@ -86,12 +86,28 @@ impl KnotType {
         self.names.len() == 1 && self.exhaustive
     }
 
-    /// The names that fit, separated by `|`; `unknown(...)` with the Alexander polynomial if none does.
+    /// The name with its handedness, `m3_1` for the mirror image of `3_1`; several that fit, separated by `|`, those of another
+    /// knot or of a mirror image that the invariants do not tell apart; `unknown(...)` with the Alexander polynomial if none fits.
+    ///
+    /// # Validation
+    /// `names_the_table_and_its_mirrors`
     pub fn label(&self) -> String {
-        if self.names.is_empty() {
-            format!("unknown({})", self.invariants.alexander_text())
-        } else {
-            self.names.join("|")
+        match (&self.names[..], self.handedness) {
+            ([], _) => format!("{UNKNOWN}{})", self.invariants.alexander_text()),
+            ([name], Handedness::Mirrored) => mirror_name(name),
+            ([name], Handedness::Undecided) => format!("{name}|{}", mirror_name(name)),
+            (names, _) => names.join("|"),
+        }
+    }
+
+    /// Whether the curve may be the knot `name`, its handedness included: nothing that was found contradicts it.
+    pub fn fits(&self, name: &str) -> bool {
+        let is = |own: &String| *own == *name;
+        let is_mirror = |own: &String| mirror_name(own) == *name;
+        match (&self.names[..], self.handedness) {
+            ([own], Handedness::Tabulated) => is(own),
+            ([own], Handedness::Mirrored) => is_mirror(own),
+            (names, _) => names.iter().any(|own| is(own) || is_mirror(own)),
         }
     }
 
@@ -111,7 +127,9 @@ impl KnotType {
             [name] if self.is_unknot() => format!("{name}, the unknot"),
             [name] => match self.handedness {
                 Handedness::Tabulated => format!("{name}, as in the table"),
-                Handedness::Mirrored => format!("m{name}, the mirror image of {name}"),
+                Handedness::Mirrored => {
+                    format!("{}, the mirror image of {name}", mirror_name(name))
+                }
                 Handedness::Amphichiral => format!("{name}, equal to its mirror image"),
                 Handedness::Undecided => format!("{name} or its mirror image"),
             },
@@ -122,6 +140,8 @@ impl KnotType {
 
 /// Name of the unknot.
 const UNKNOT: &str = "0_1";
+/// How the label of a knot begins that has no name.
+pub(crate) const UNKNOWN: &str = "unknown(";
 
 /// The knot type of the closed polygon through `vertices`.
 ///
@@ -159,7 +179,7 @@ pub(crate) fn shortened(vertices: &[V]) -> Vec<V> {
 /// How far to go in telling knots apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Care {
-    /// The Jones polynomial only where several names fit without it.
+    /// The Jones polynomial only where several names, or a knot and its mirror image, fit without it.
     Name,
     /// The Jones polynomial of everything that is knotted, for the handedness too.
     Handed,
@@ -178,7 +198,9 @@ fn classify(reducer: &mut Reducer, table: &KnotTable, care: Care) -> Result<Knot
     }
     let mut finding = matches(&invariants, None, table);
     let mut jones = None;
-    if care == Care::Handed || finding.names.len() > 1 {
+    let is_open = finding.names.len() > 1
+        || !finding.names.is_empty() && finding.handedness == Handedness::Undecided;
+    if care == Care::Handed || is_open {
         jones = Invariants::jones_of(&diagram);
         if jones.is_some() {
             finding = matches(&invariants, jones.as_ref(), table);

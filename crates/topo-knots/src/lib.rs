@@ -1,7 +1,7 @@
 //! Knot table, braid closures, tight shapes, and knot types from coordinates.
 //!
 //! Reading order: `table` (what is known of a knot), `braid`, `curve_file` (coordinates from and to files), `start_file`, `moebius` and `inversion` (curves to start from),
-//! `thickness`, `tighten` (from a loose curve to a tight one, with its certificate), `ideal` (the same, kept on disk),
+//! `tighten` (from a loose curve to a tight one, with its certificate), `ideal` (the same, kept on disk),
 //! `invariant` (polynomial, determinant and signature from coordinates) and `identify` (names from coordinates).
 //!
 //! Lengths of tight knots are in units of the tube radius: [`TightKnot::length_over_radius`].
@@ -14,10 +14,8 @@ mod identify;
 mod invariant;
 mod inversion;
 mod moebius;
-mod segment;
 mod start_file;
 mod table;
-mod thickness;
 mod tighten;
 
 pub use braid::{closed_braid, n_components, parse_braid};
@@ -33,12 +31,13 @@ pub use invariant::{
 };
 pub use moebius::relax_moebius;
 pub use start_file::StartCurve;
-pub use table::{Chirality, KnotEntry, KnotTable};
-pub use thickness::{Thickness, thickness, thickness_brute_force, windowed_half_distance};
+pub use table::{Chirality, KnotEntry, KnotTable, mirror_name};
 pub use tighten::{
-    Centreline, Certificate, SecondOpinion, TightKnot, TightenSettings, second_opinion, struts,
-    tighten, tighten_entry,
+    Certificate, SecondOpinion, TightKnot, TightenSettings, second_opinion, struts, tighten,
+    tighten_entry,
 };
+
+pub use topo_core::{Thickness, thickness, thickness_brute_force, windowed_half_distance};
 
 /// A point or vector in space.
 pub type V = nalgebra::Vector3<f64>;

@@ -4,11 +4,12 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use crate::KnotError;
+use crate::identify::UNKNOWN;
 use include_dir::{Dir, include_dir};
 
 mod entry;
 
-pub use entry::{Chirality, KnotEntry};
+pub use entry::{Chirality, KnotEntry, mirror_name};
 
 static BUILTIN: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/knots");
 
@@ -18,7 +19,7 @@ static BUILTIN: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/knots");
 /// `builtin_table_is_complete`.
 #[derive(Debug, Clone, Default)]
 pub struct KnotTable {
-    /// Primes by crossing number, then sums.
+    /// The unknot, primes by crossing number, then sums.
     entries: BTreeMap<Rank, KnotEntry>,
     /// Where each name, alias and mirror image is found; the flag is set for mirror images.
     names: BTreeMap<String, (Rank, bool)>,
@@ -51,7 +52,7 @@ fn rank(entry: &KnotEntry) -> Rank {
 }
 
 impl KnotTable {
-    /// The table that comes with the crate: the 35 prime knots of up to eight crossings, 10_124 and three sums of knots.
+    /// The table that comes with the crate: the unknot, the 35 prime knots of up to eight crossings, 10_124 and three sums of knots.
     pub fn builtin() -> Self {
         let mut table = Self::default();
         for file in BUILTIN.files().filter(|f| is_toml(f.path())) {
@@ -156,20 +157,54 @@ impl KnotTable {
         })
     }
 
-    /// Names of all knots, mirror images left out: primes by crossing number, then sums.
+    /// The label of the mirror image of what [`KnotType::label`](crate::KnotType::label) calls `label`.
+    ///
+    /// # Validation
+    /// `labels_of_mirror_images`
+    pub fn mirror_label(&self, label: &str) -> String {
+        let is_amphichiral = |name: &str| {
+            let known = |name: &str| self.get(name).map(|knot| knot.chirality);
+            match known(name) {
+                Ok(chirality) => chirality == Chirality::Amphichiral,
+                // a sum that is not in the table
+                Err(_) => name
+                    .split('#')
+                    .all(|factor| known(factor).is_ok_and(|c| c == Chirality::Amphichiral)),
+            }
+        };
+        if label.is_empty() || label.starts_with(UNKNOWN) {
+            return label.to_owned();
+        }
+        let names: Vec<&str> = label.split('|').collect();
+        let mirrored: Vec<String> = names
+            .iter()
+            .map(|name| match is_amphichiral(name) {
+                true => (*name).to_owned(),
+                false => mirror_name(name),
+            })
+            .collect();
+        // `6_1|m6_1`: the handedness is not known, nor is that of the mirror image
+        if mirrored.iter().all(|name| names.contains(&name.as_str())) {
+            return label.to_owned();
+        }
+        mirrored.join("|")
+    }
+
+    /// Names of all knots, mirror images left out: the unknot, primes by crossing number, then sums.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.iter().map(|knot| knot.name.as_str())
     }
 
-    /// All knots, mirror images left out: primes by crossing number, then sums.
+    /// All knots, mirror images left out: the unknot, primes by crossing number, then sums.
     pub fn iter(&self) -> impl Iterator<Item = &KnotEntry> {
         self.entries.values()
     }
 
-    /// The prime knots of at most so many crossings.
+    /// The prime knots of at most so many crossings; the unknot is not prime.
     pub fn primes_up_to(&self, crossing_number: u32) -> impl Iterator<Item = &KnotEntry> {
-        self.iter()
-            .filter(move |knot| !knot.is_composite() && knot.crossing_number <= crossing_number)
+        self.iter().filter(move |knot| {
+            !knot.is_unknot() && !knot.is_composite() && knot.crossing_number <= crossing_number
+        })
     }
 
     /// The crossing number up to which no prime knot is missing.

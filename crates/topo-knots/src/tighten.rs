@@ -17,6 +17,8 @@ pub use second::{SecondOpinion, second_opinion};
 pub use settings::TightenSettings;
 pub use struts::struts;
 
+use std::f64::consts::TAU;
+
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use serde::{Deserialize, Serialize};
@@ -24,7 +26,7 @@ use topo_core::Polyline;
 
 use crate::inversion::inverted;
 use crate::moebius::relax_moebius;
-use crate::{Invariants, KnotEntry, KnotError, closed_braid, thickness};
+use crate::{Invariants, KnotEntry, KnotError, closed_braid, mirror_name, thickness};
 use level::{LOOSE_REACH, Level, NEAR_REACH, Outcome, tighten_level};
 use topo_core::CpuClock;
 
@@ -42,11 +44,10 @@ const LEAST_PER_UNIT: f64 = 4.0;
 const MOST_STRANDS: i32 = 4;
 /// Vertices per unit of ropelength above which a level starts from a curve that is nearly tight.
 const WELL_RESOLVED: f64 = 8.0;
+/// Vertices of the tight unknot: it is 2e-5 longer than the circle.
+const CIRCLE_VERTICES: usize = 400;
 /// Levels before the last need not come to rest better than this.
 const COARSE_TOLERANCE: f64 = 1e-4;
-
-/// Edges at which the ropelength of a smoothed curve is measured.
-const FINE_EDGES: usize = 800;
 
 /// A tight knot with the evidence for it.
 ///
@@ -68,54 +69,60 @@ pub struct TightKnot {
     pub n_factorisations: usize,
 }
 
-/// Centreline of a rod: a tight knot smoothed and resampled.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Centreline {
-    /// Closed polygon of equal edges, in the unit of the tight knot.
-    pub curve: Polyline,
-    /// Its length over its thickness.
-    pub ropelength: f64,
-}
-
 impl TightKnot {
-    /// Centreline of `n_edges` equal edges for a rod.
-    ///
-    /// A tight curve has jumps of curvature, so two passes of the binomial filter (1, 2, 1)/4 come first. The ropelength is
-    /// that of the smoothed curve at a fixed fine resolution: contact diameters derived from it must not depend on `n_edges`.
+    /// Centreline of a rod: the tight curve after two passes of the binomial filter (1, 2, 1)/4, since it has jumps of curvature.
     ///
     /// # Errors
-    /// [`KnotError::Setting`] for fewer than 8 edges, [`KnotError::Curve`] if resampling fails.
-    pub fn centreline(&self, n_edges: usize) -> Result<Centreline, KnotError> {
-        if n_edges < 8 {
-            let expected = "a closed rod needs at least 8 edges";
-            return Err(KnotError::Setting {
-                name: "edges",
-                value: n_edges as f64,
-                expected,
-            });
+    /// [`KnotError::Curve`] if smoothing makes vertices coincide.
+    pub fn centreline(&self) -> Result<Polyline, KnotError> {
+        Ok(self.curve.smoothed(2)?)
+    }
+
+    /// The tight shape of the mirror image, to the bit: turned around in the plane z = 0, with the other name and writhe.
+    ///
+    /// # Validation
+    /// `mirror_images_are_tightened_as_the_knot_itself`
+    pub fn mirror(&self) -> Self {
+        let certificate = Certificate {
+            // not -0 for a planar curve
+            writhe: 0.0 - self.certificate.writhe,
+            invariants: self.certificate.invariants.mirror(),
+            ..self.certificate.clone()
+        };
+        Self {
+            name: mirror_name(&self.name),
+            curve: self.curve.mirrored(),
+            certificate,
+            ..self.clone()
         }
-        let smooth = self.curve.smoothed(2)?;
-        let fine = smooth.resampled(FINE_EDGES)?;
-        let ropelength = fine.length() / thickness(&fine).tau;
-        Ok(Centreline {
-            curve: smooth.resampled(n_edges)?,
-            ropelength,
-        })
     }
 }
 
 /// Tightens a knot of the table from the starts that serve it: its curve or closed braid, plain and rounded, the closures of
 /// its other words and of random words of the same braid, and inversions of the best of these if the settings ask for them.
 ///
+/// A mirror image is the mirror image of the tightened knot, to the bit: the search is random, and would find another shape.
+/// The tight unknot is the circle, and nothing is searched for.
+///
 /// # Errors
 /// As [`tighten`], and [`KnotError::Mismatch`] if a start contradicts the invariants of the entry.
+///
+/// # Validation
+/// `mirror_images_are_tightened_as_the_knot_itself`, `the_tight_unknot_is_the_circle`
 pub fn tighten_entry(
     entry: &KnotEntry,
     settings: &TightenSettings,
 ) -> Result<TightKnot, KnotError> {
+    if entry.is_mirror_image() {
+        return Ok(tighten_entry(&entry.mirror(), settings)?.mirror());
+    }
     let clock = CpuClock::start();
     settings.check()?;
     let plain = entry.start_curve()?;
+    if entry.is_unknot() {
+        entry.verify(&plain)?;
+        return circle(entry, clock);
+    }
     let mut starts = vec![plain];
     for n_edges in MOEBIUS_EDGES {
         // A curve that is too long for so few edges is no loss: the other starts remain.
@@ -153,6 +160,25 @@ pub fn tighten_entry(
     let mut tight = tighten(&entry.name, &starts, settings)?;
     tight.cpu_seconds = clock.seconds();
     Ok(tight)
+}
+
+/// The tight unknot: the regular polygon on a circle.
+fn circle(entry: &KnotEntry, clock: CpuClock) -> Result<TightKnot, KnotError> {
+    let at = |k: usize| {
+        let (sin, cos) = (TAU * k as f64 / CIRCLE_VERTICES as f64).sin_cos();
+        crate::V::new(cos, sin, 0.0)
+    };
+    let curve = Polyline::new((0..CIRCLE_VERTICES).map(at).collect(), true)?;
+    let curve = curve.scaled(1.0 / thickness(&curve).tau)?;
+    let certificate = Certificate::of(&curve, true)?;
+    Ok(TightKnot {
+        name: entry.name.clone(),
+        length_over_radius: curve.length() / certificate.tau(),
+        curve,
+        certificate,
+        cpu_seconds: clock.seconds(),
+        n_factorisations: 0,
+    })
 }
 
 /// Inversions of the best that the starts lead to, rounded.

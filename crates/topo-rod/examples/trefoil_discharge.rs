@@ -40,8 +40,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         tolerance,
         ..Default::default()
     };
-    // a loose trefoil: any ropelength below 50 gives the true tube
-    let battery = RodBattery::new(&parameters, &accuracy, Guards::default(), &curve, 45.0)?;
+    let battery = RodBattery::new(&parameters, &accuracy, Guards::default(), &curve)?;
     let clock = std::time::Instant::now();
     let charged = battery.charge(&ChargeSettings::default(), &Interrupt::new())?;
     let report = &charged.record().report;

@@ -18,25 +18,40 @@ pub struct RodBattery {
     accuracy: Accuracy,
     guards: Guards,
     tube: Tube,
+    ropelength: f64,
+    /// In its own unit.
+    centreline: Polyline,
     start: RodState,
 }
 
 impl RodBattery {
+    /// Farthest displacement of a disturbed start, in h, with room for rounding.
+    const FARTHEST: f64 = 0.5 + 1e-9;
     /// Least length of a step, relative to the time T_0.
     const LEAST_STEP: f64 = 1e-12;
 
-    /// A battery on a closed centreline (any scale) whose ropelength, length over thickness radius, is `ropelength`.
+    /// Edges at which the ropelength is measured: contact diameters must not depend on the edges of the rod.
+    const FINE_EDGES: usize = 800;
+    /// Ropelength from which on a curve counts as touching itself.
+    const LONGEST_ROPE: f64 = 1e6;
+    /// Equal edges: within this relative difference they are left as they are.
+    const EDGE_SPREAD: f64 = 1e-9;
+
+    /// A battery on a closed centreline, in any unit.
     ///
-    /// The curve is resampled to the number of edges asked for and scaled as the reading says.
+    /// Its ropelength, length over thickness, is measured on the curve itself, so that strands of the tube that the reading makes
+    /// of it do not overlap. The curve is resampled to the number of edges asked for and scaled as the reading says.
     ///
     /// # Errors
-    /// A parameter out of range, or a curve that is open or unusable.
+    /// A parameter out of range, or a curve that is open, touches itself or is unusable.
+    ///
+    /// # Validation
+    /// `law_ropelength_is_that_of_the_curve`
     pub fn new(
         parameters: &RodParameters,
         accuracy: &Accuracy,
         guards: Guards,
         centreline: &Polyline,
-        ropelength: f64,
     ) -> Result<Self, RodError> {
         let parameters = parameters.clone().checked()?;
         let accuracy = accuracy.checked()?;
@@ -46,21 +61,79 @@ impl RodBattery {
                 needed: "a closed",
             });
         }
+        let fine = centreline.resampled(Self::FINE_EDGES)?;
+        let ropelength = fine.ropelength();
+        if !(0.0..Self::LONGEST_ROPE).contains(&ropelength) {
+            return Err(RodError::TouchesItself {
+                thickness: topo_core::thickness(&fine).tau,
+                length: fine.length(),
+            });
+        }
         let tube = parameters.tube(ropelength)?;
-        let curve = if centreline.n_edges() == parameters.n_edges {
+        let edges = centreline.edge_lengths();
+        let mean = centreline.length() / edges.len() as f64;
+        let is_even = |edge: &f64| (edge / mean - 1.0).abs() <= Self::EDGE_SPREAD;
+        let centreline = if edges.len() == parameters.n_edges && edges.iter().all(is_even) {
             centreline.clone()
         } else {
             centreline.resampled(parameters.n_edges)?
         };
-        let curve = curve.scaled(tube.start_length / curve.length())?;
-        let start = RodState::new(&curve, tube.length, parameters.twist.unwrap_or(0.0))?;
+        let start = start_of(&centreline, &tube, &parameters)?;
         Ok(Self {
             parameters,
             accuracy,
             guards,
             tube,
+            ropelength,
+            centreline,
             start,
         })
+    }
+
+    /// The same battery started from `curve`, its [`centreline`](Self::centreline) with small displacements, as the imperfections
+    /// of a real fibre; the tube stays that of the undisturbed one.
+    ///
+    /// # Errors
+    /// A curve with another number of vertices, or one that is anywhere more than h/2 from the undisturbed one.
+    pub fn disturbed(&self, curve: &Polyline) -> Result<Self, RodError> {
+        let h = self.centreline.length() / self.tube.start_length;
+        let pairs = self.centreline.vertices().iter().zip(curve.vertices());
+        let moved = pairs.map(|(a, b)| (a - b).norm()).fold(0.0, f64::max) / h;
+        let is_alike = curve.is_closed() && curve.n_vertices() == self.centreline.n_vertices();
+        if !is_alike || moved > Self::FARTHEST {
+            return Err(RodError::Disturbance {
+                moved: if is_alike { moved } else { f64::INFINITY },
+                most: Self::FARTHEST,
+            });
+        }
+        Ok(Self {
+            centreline: curve.clone(),
+            start: start_of(curve, &self.tube, &self.parameters)?,
+            ..self.clone()
+        })
+    }
+
+    /// The same battery started from the mirror image of its curve, the twist as it is.
+    ///
+    /// # Errors
+    /// None that the battery itself has not met.
+    pub fn mirrored(&self) -> Result<Self, RodError> {
+        let centreline = self.centreline.mirrored();
+        Ok(Self {
+            start: start_of(&centreline, &self.tube, &self.parameters)?,
+            centreline,
+            ..self.clone()
+        })
+    }
+
+    /// The start curve of as many equal edges as the rod has, in the unit of the curve that was given.
+    pub fn centreline(&self) -> &Polyline {
+        &self.centreline
+    }
+
+    /// Length over thickness of the curve that was given.
+    pub fn ropelength(&self) -> f64 {
+        self.ropelength
     }
 
     /// The state before charging: the twist is tied in, nothing has relaxed.
@@ -82,6 +155,16 @@ impl RodBattery {
     pub fn accuracy(&self) -> &Accuracy {
         &self.accuracy
     }
+}
+
+/// The rod on a centreline that is scaled as the reading says.
+fn start_of(
+    centreline: &Polyline,
+    tube: &Tube,
+    parameters: &RodParameters,
+) -> Result<RodState, RodError> {
+    let curve = centreline.scaled(tube.start_length / centreline.length())?;
+    RodState::new(&curve, tube.length, parameters.twist.unwrap_or(0.0))
 }
 
 /// A simulation of a rod with either integrator.

@@ -13,6 +13,26 @@ pub enum RodError {
     /// The centreline is not usable.
     #[error("the centreline cannot carry a rod: {0}")]
     Centreline(#[from] CurveError),
+    /// The centreline runs through itself, so that no tube follows it.
+    #[error(
+        "the centreline touches itself (thickness {thickness:.1e} of {length:.4} in length): no rod can follow it, use a curve whose strands are apart"
+    )]
+    TouchesItself {
+        /// Thickness of the curve, in its own unit.
+        thickness: f64,
+        /// Its length.
+        length: f64,
+    },
+    /// A disturbed start curve is not near the undisturbed one.
+    #[error(
+        "the start curve was moved by {moved:.3} h (inf: it has other vertices): keep its vertices and move each by at most {most:.1} h"
+    )]
+    Disturbance {
+        /// Largest displacement, in h; infinite for another number of vertices.
+        moved: f64,
+        /// What is allowed.
+        most: f64,
+    },
     /// Fewer edges than a rod needs.
     #[error("a rod of {n_edges} edges cannot be modelled: use at least {least} edges")]
     TooFewEdges {

@@ -9,6 +9,7 @@
 //! [`RodUnits`](topo_core::RodUnits) leads to SI.
 
 mod battery;
+mod circle;
 pub mod contact;
 mod density;
 mod ends;
@@ -28,6 +29,7 @@ pub use battery::charge::{ChargeSettings, ChargedRod};
 pub use battery::cut::{CutCandidate, CutRod, CutSite, cut_candidates};
 pub use battery::discharge::{Discharge, DischargeSettings};
 pub use battery::record::{PhaseReport, RodSample, RunRecord};
+pub use circle::{cut_circle_energy, cut_circle_time};
 pub use density::{energy_density, smoothed_density};
 pub use ends::{EndCondition, EndMotion, Ends};
 pub use error::RodError;

@@ -1,22 +1,24 @@
 //! How far the discharge times of a preset are from those of a much finer run.
 
+use std::f64::consts::{PI, TAU};
+
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use topo_core::{CpuClock, Interrupt};
-use topo_knots::KnotTable;
-use topo_rod::{Accuracy, CutSite};
+use topo_knots::{KnotEntry, KnotTable};
+use topo_rod::{Accuracy, CutSite, Ends, Reading, cut_circle_time};
 
 use super::case::{CaseJob, ELASTIC, charge};
 use super::choices::Preset;
-use super::scene::ElasticScene;
+use super::scene::{ElasticCase, ElasticScene};
 use crate::AnalysisError;
 use crate::knots::Shapes;
 use crate::progress::Event;
 use crate::times::{DischargeTimes, ELASTIC_SHARES};
 
-/// Knots and twists on which accuracy is measured: every knot of the published sweep untwisted, and twenty others spread over
-/// knots and twists. The list is fixed so that numbers of different versions can be compared.
-pub const ACCURACY_CASES: [(&str, f64); 34] = [
+/// Knots and twists on which accuracy is measured: every knot of the published sweep untwisted, twenty others spread over
+/// knots and twists, and the unknot, whose discharge is known in closed form. The list is fixed so that numbers of different versions can be compared.
+pub const ACCURACY_CASES: [(&str, f64); 35] = [
     ("3_1", 0.0),
     ("4_1", 0.0),
     ("5_1", 0.0),
@@ -51,6 +53,7 @@ pub const ACCURACY_CASES: [(&str, f64); 34] = [
     ("7_4", 1.25),
     ("7_5", -1.5),
     ("7_7", 2.0),
+    ("0_1", 0.0),
 ];
 
 /// One comparison; times in T_0.
@@ -130,7 +133,37 @@ pub(crate) fn measured_discharge(
     })
 }
 
-/// Compares the discharges of `scene` with those of [`reference_scene`] on the given knots and twists, cut at the same place.
+/// The exact discharge of a case, where it is known: an untwisted unknot is a circle, and cut with free ends it unbends as
+/// [`cut_circle_energy`](topo_rod::cut_circle_energy) says.
+///
+/// # Validation
+/// `the_circle_is_known_exactly`
+pub(crate) fn exact_discharge(
+    scene: &ElasticScene,
+    case: &ElasticCase,
+    entry: &KnotEntry,
+    cut: f64,
+) -> Option<MeasuredDischarge> {
+    let is_twisted = case.rod.twist.is_some_and(|twist| twist != 0.0);
+    if !entry.is_unknot() || is_twisted || scene.discharge.ends != Ends::default() {
+        return None;
+    }
+    let length = match case.rod.reading {
+        Reading::OwnLength => TAU,
+        _ => case.rod.slenderness,
+    };
+    // T_b/T_0 = L/(π² h)
+    let time = |share| Some(cut_circle_time(share).ok()? * length / (PI * PI));
+    Some(MeasuredDischarge {
+        cut,
+        energy: 0.125 * PI * (TAU / length).powi(2),
+        t50: time(0.5),
+        t99: time(0.99),
+    })
+}
+
+/// Compares the discharges of `scene` with those of [`reference_scene`] on the given knots and twists, cut at the same place, or with the
+/// exact one where that is known.
 ///
 /// # Errors
 /// As [`run_sweep`](crate::run_sweep).
@@ -152,6 +185,7 @@ pub fn measure_accuracy(
             let Some(tight) = shapes.get(&name) else {
                 return Ok(None);
             };
+            let case = scene.case(&name, Some(twist));
             let run = |scene: &ElasticScene, site: CutSite| {
                 let clock = CpuClock::start();
                 let case = scene.case(&name, Some(twist));
@@ -164,7 +198,11 @@ pub fn measure_accuracy(
                 measured_discharge(&job, site, interrupt).map(|found| (found, clock.seconds()))
             };
             let (coarse, cpu_seconds) = run(scene, CutSite::MaximumEnergyDensity)?;
-            let (reference, cpu_seconds_reference) = run(&fine, CutSite::At(coarse.cut))?;
+            let exact = exact_discharge(scene, &case, table.get(&name)?, coarse.cut);
+            let (reference, cpu_seconds_reference) = match exact {
+                Some(exact) => (exact, 0.0),
+                None => run(&fine, CutSite::At(coarse.cut))?,
+            };
             if interrupt.is_requested() {
                 return Ok(None);
             }
@@ -198,6 +236,22 @@ pub fn measure_accuracy(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_circle_is_known_exactly() {
+        let table = KnotTable::builtin();
+        let scene = ElasticScene::published(Preset::Draft);
+        let exact = |knot: &str, twist: f64| {
+            let case = scene.case(knot, Some(twist));
+            exact_discharge(&scene, &case, table.get(knot).unwrap(), 0.0)
+        };
+        let circle = exact("0_1", 0.0).unwrap();
+        assert!((circle.t50.unwrap() - 2.459134).abs() < 5e-6);
+        assert!((circle.t99.unwrap() - 22.266100).abs() < 5e-6);
+        // π B/R over E_b h² L, B = π/4, R = 50/2π
+        assert!((circle.energy - 0.0062013).abs() < 1e-6);
+        assert!(exact("0_1", 0.5).is_none() && exact("3_1", 0.0).is_none());
+    }
 
     #[test]
     fn the_list_has_every_published_knot_untwisted_and_no_case_twice() {

@@ -2,10 +2,11 @@
 
 use std::path::Path;
 
+use nalgebra::Vector3;
 use serde_json::json;
-use topo_core::{CpuClock, Interrupt, Polyline, StopReason};
+use topo_core::{CpuClock, Interrupt, StopReason};
 use topo_knots::{Chirality, KnotEntry, KnotTable, TightKnot, identify};
-use topo_rod::{ChargedRod, CutSite, Discharge, Guards, PhaseReport, RodBattery};
+use topo_rod::{ChargedRod, CutSite, Discharge, Guards, PhaseReport, RodBattery, RodSample};
 
 use super::choices::{Cuts, NEAR_TIE};
 use super::imperfection::perturbed;
@@ -18,7 +19,7 @@ use crate::timeline::Timeline;
 use crate::times::{DischargeTimes, ELASTIC_SHARES};
 
 /// Changes whenever the same scene gives other numbers than before; finished cases of another version are computed again.
-pub const RESULTS_VERSION: u32 = 4;
+pub const RESULTS_VERSION: u32 = 5;
 
 /// Elastic parts of the energy, without contact.
 pub(crate) const ELASTIC: [&str; 3] = ["bend", "twist", "stretch"];
@@ -50,8 +51,11 @@ fn starts_from_two_images(case: &ElasticCase, entry: &KnotEntry) -> bool {
 /// in the one of the two minima that it starts from. The image that stores less under the twist of the case is taken, so
 /// that the energy of such a knot does not depend on the sign of the twist.
 ///
+/// The mirror image of a knot starts from the mirror image of its start curve, imperfections included, so that at the opposite
+/// twist all of its run is the mirror image of the knot's.
+///
 /// # Validation
-/// `amphichiral_knots_store_the_same_under_either_twist`.
+/// `amphichiral_knots_store_the_same_under_either_twist`, `law_mirrored_knots_give_mirrored_runs`.
 pub(crate) fn charge(
     job: &CaseJob<'_>,
     interrupt: &Interrupt,
@@ -66,27 +70,28 @@ pub(crate) fn charge(
         case: case.name(),
         source,
     };
-    let start = tight.centreline(case.rod.n_edges)?;
-    let tube = case.rod.tube(start.ropelength).map_err(refuse)?;
-    let size = scene.imperfection * start.curve.length() / tube.start_length;
-    let curve = perturbed(&start.curve, size, scene.seed).map_err(|e| refuse(e.into()))?;
-    let from = |curve: &Polyline| {
-        RodBattery::new(
-            &case.rod,
-            &scene.accuracy,
-            Guards::default(),
-            curve,
-            start.ropelength,
-        )
-        .and_then(|battery| battery.charge(&scene.charge, interrupt))
-        .map_err(refuse)
-    };
-    let charged = from(&curve)?;
-    if !starts_from_two_images(case, table.get(&case.knot)?) {
+    let entry = table.get(&case.knot)?;
+    let centreline = tight.centreline()?;
+    let battery = RodBattery::new(&case.rod, &scene.accuracy, Guards::default(), &centreline);
+    let mut battery = battery.map_err(refuse)?;
+    if scene.imperfection > 0.0 {
+        let start = battery.centreline();
+        let size = scene.imperfection * start.length() / battery.tube().start_length;
+        // the mirror image of a knot has the mirror image of its imperfections
+        let moved = if entry.is_mirror_image() {
+            perturbed(&start.mirrored(), size, scene.seed).map(|curve| curve.mirrored())
+        } else {
+            perturbed(start, size, scene.seed)
+        };
+        let moved = moved.map_err(|e| refuse(e.into()))?;
+        battery = battery.disturbed(&moved).map_err(refuse)?;
+    }
+    let from = |battery: &RodBattery| battery.charge(&scene.charge, interrupt).map_err(refuse);
+    let charged = from(&battery)?;
+    if !starts_from_two_images(case, entry) {
         return Ok(charged);
     }
-    let flipped = curve.vertices().iter().map(|x| [x.x, x.y, -x.z].into());
-    let image = from(&Polyline::new(flipped.collect(), true).map_err(|e| refuse(e.into()))?)?;
+    let image = from(&battery.mirrored().map_err(refuse)?)?;
     let stored = |rod: &ChargedRod| {
         let last = rod.record().samples.last();
         let energy = last.map_or(f64::INFINITY, |s| s.elastic());
@@ -111,7 +116,10 @@ pub(crate) struct CaseJob<'a> {
 /// One cut of a charged rod, followed to its end.
 pub(super) struct FollowedCut {
     pub discharge: Discharge,
+    /// Of the energy before the cut.
     pub times: DischargeTimes,
+    /// Of the energy that the cut left.
+    pub times_after_cut: DischargeTimes,
     pub timeline: Timeline,
     pub row: SweepRow,
 }
@@ -163,32 +171,20 @@ pub(crate) fn run(
             if interrupt.is_requested() {
                 return Ok(None);
             }
-            let curves: Vec<_> = discharge
-                .record
-                .samples
-                .iter()
-                .map(|s| (s.time, s.state.vertices()))
-                .collect();
-            let timeline = Timeline::of(&curves, table, scene.timeline, scene.seed)?;
-            let times = DischargeTimes::of(
-                &discharge.record.curve,
-                &ELASTIC,
-                discharge.start,
-                &ELASTIC_SHARES,
-            );
-            let row = discharge_row(
-                &base,
-                &discharge,
-                &times,
-                &timeline,
-                clock.seconds() + charge_seconds / sites.len() as f64,
-            );
-            runs.push(FollowedCut {
+            let timeline = timeline(job, &discharge)?;
+            let released = |of: f64| {
+                DischargeTimes::of(&discharge.record.curve, &ELASTIC, of, &ELASTIC_SHARES)
+            };
+            let mut run = FollowedCut {
+                times: released(discharge.start),
+                times_after_cut: released(discharge.after_cut),
                 discharge,
-                times,
                 timeline,
-                row,
-            });
+                row: SweepRow::default(),
+            };
+            let cpu_seconds = clock.seconds() + charge_seconds / sites.len() as f64;
+            run.row = discharge_row(&base, &run, cpu_seconds);
+            runs.push(run);
         }
     } else {
         base.cpu_seconds = charge_seconds;
@@ -216,6 +212,27 @@ pub(crate) fn run(
     Ok(Some(rows))
 }
 
+/// Knot types of a discharge. Those of a mirror image are found on the image of its shapes, which is that of the knot itself: a
+/// type is that of closures in some directions, and these would be others.
+fn timeline(job: &CaseJob<'_>, discharge: &Discharge) -> Result<Timeline, AnalysisError> {
+    let is_mirror_image = job.table.get(&job.case.knot)?.is_mirror_image();
+    let seen = |s: &RodSample| -> Vec<Vector3<f64>> {
+        let side = if is_mirror_image { -1.0 } else { 1.0 };
+        let vertices = s.state.vertices().iter();
+        vertices.map(|x| [x.x, x.y, side * x.z].into()).collect()
+    };
+    let samples = &discharge.record.samples;
+    let curves: Vec<_> = samples.iter().map(seen).collect();
+    let timed: Vec<_> = samples.iter().zip(&curves).collect();
+    let timed: Vec<_> = timed.iter().map(|(s, x)| (s.time, x.as_slice())).collect();
+    let scene = job.scene;
+    let timeline = Timeline::of(&timed, job.table, scene.timeline, scene.seed)?;
+    Ok(match is_mirror_image {
+        true => timeline.mirrored(job.table),
+        false => timeline,
+    })
+}
+
 fn phase_warnings(phase: &str, report: &PhaseReport, warnings: &mut String) {
     if !report.stop.is_success() {
         push_warning(warnings, &format!("{phase} stopped: {}", report.stop));
@@ -239,6 +256,7 @@ fn charged_row(case: &ElasticCase, charged: &ChargedRod, table: &KnotTable) -> S
     let record = charged.record();
     let report = &record.report;
     let mut row = SweepRow {
+        case: case.name(),
         knot: case.knot.clone(),
         twist: case.rod.twist.unwrap_or(0.0),
         reading: case.rod.reading.name().to_owned(),
@@ -262,7 +280,7 @@ fn charged_row(case: &ElasticCase, charged: &ChargedRod, table: &KnotTable) -> S
         );
     }
     match identify(charged.state().vertices(), table) {
-        Ok(kind) if kind.names.contains(&case.knot) => {}
+        Ok(kind) if kind.fits(&case.knot) => {}
         Ok(kind) => push_warning(
             &mut row.warnings,
             &format!("the charged rod is tied as {}", kind.label()),
@@ -275,22 +293,21 @@ fn charged_row(case: &ElasticCase, charged: &ChargedRod, table: &KnotTable) -> S
     row
 }
 
-fn discharge_row(
-    base: &SweepRow,
-    discharge: &Discharge,
-    times: &DischargeTimes,
-    timeline: &Timeline,
-    cpu_seconds: f64,
-) -> SweepRow {
-    let report = &discharge.record.report;
-    let at = |share| times.at(share).map(|t| t.value);
+fn discharge_row(base: &SweepRow, run: &FollowedCut, cpu_seconds: f64) -> SweepRow {
+    let report = &run.discharge.record.report;
+    let at = |times: &DischargeTimes, share| times.at(share).map(|t| t.value);
+    let (times, after_cut) = (&run.times, &run.times_after_cut);
     let mut row = SweepRow {
-        cut: discharge.at,
-        t50: at(0.5),
-        t90: at(0.9),
-        t95: at(0.95),
-        t99: at(0.99),
-        t_untie: timeline.untying_time(),
+        cut: run.discharge.at,
+        t50: at(times, 0.5),
+        t90: at(times, 0.9),
+        t95: at(times, 0.95),
+        t99: at(times, 0.99),
+        t50_after_cut: at(after_cut, 0.5),
+        t90_after_cut: at(after_cut, 0.9),
+        t95_after_cut: at(after_cut, 0.95),
+        t99_after_cut: at(after_cut, 0.99),
+        t_untie: run.timeline.untying_time(),
         min_distance_over_contact: base
             .min_distance_over_contact
             .into_iter()

@@ -98,14 +98,13 @@ fn series_row<'a>(
     }
 }
 
-/// Energies relative to the start at which the shape is kept.
+/// Energies relative to that before the cut at which the shape is kept.
 const SNAPSHOT_SHARES: [f64; 11] = [1.0, 0.9, 0.75, 0.5, 0.35, 0.2, 0.1, 0.05, 0.02, 0.01, 0.002];
 
-fn snapshot_indices(samples: &[RodSample]) -> Vec<usize> {
-    let Some(first) = samples.first() else {
+fn snapshot_indices(samples: &[RodSample], start: f64) -> Vec<usize> {
+    if samples.is_empty() {
         return Vec::new();
-    };
-    let start = first.elastic();
+    }
     let mut indices: Vec<usize> = SNAPSHOT_SHARES
         .iter()
         .filter_map(|share| samples.iter().position(|s| s.elastic() <= share * start))
@@ -184,7 +183,7 @@ pub(super) fn write_case(made: &MadeCase<'_>, folder: &Path) -> Result<(), Analy
                 .enumerate()
                 .map(|(k, s)| series_row(Some(discharge.at), s, Some((timeline, k)))),
         );
-        for k in snapshot_indices(samples) {
+        for k in snapshot_indices(samples, discharge.start) {
             let state = &samples[k].state;
             let density = energy_density(&case.rod, state);
             snapshots.extend(
@@ -210,10 +209,10 @@ pub(super) fn write_case(made: &MadeCase<'_>, folder: &Path) -> Result<(), Analy
     let entry = table.get(&case.knot)?;
     let cuts: Vec<_> = runs
         .iter()
-        .map(|FollowedCut { discharge: d, times, timeline, row }| {
+        .map(|FollowedCut { discharge: d, times, times_after_cut, timeline, row }| {
             json!({
-                "cut": d.at, "energy_removed_by_cut": d.removed, "elastic_energy_after_cut": d.start, "tips_parted": d.parted,
-                "times": times, "knot_sequence": timeline.sequence(), "t_untie": row.t_untie, "report": d.record.report,
+                "cut": d.at, "energy_removed_by_cut": d.removed, "elastic_energy_before_cut": d.start, "elastic_energy_after_cut": d.after_cut,
+                "tips_parted": d.parted, "times": times, "times_after_cut": times_after_cut, "knot_sequence": timeline.sequence(), "t_untie": row.t_untie, "report": d.record.report,
                 "warnings": row.warnings,
             })
         })

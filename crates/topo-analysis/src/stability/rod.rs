@@ -93,8 +93,7 @@ impl Case {
             trefoil()
         };
         let run = || {
-            let battery =
-                RodBattery::new(&parameters, &accuracy, Guards::default(), &curve.0, curve.1)?;
+            let battery = RodBattery::new(&parameters, &accuracy, Guards::default(), &curve)?;
             let charged = battery.charge(&charge, interrupt)?;
             let record = charged.record();
             let mut found = violations(&record.curve, NOTHING);
@@ -222,18 +221,16 @@ pub(super) fn cells(effort: Effort) -> Vec<Cell> {
     cells
 }
 
-/// A curve over one turn of its parameter, and its ropelength (that of the curve, not of the tight knot).
-fn closed(point: impl Fn(f64) -> [f64; 3]) -> (Polyline, f64) {
+/// A curve over one turn of its parameter.
+fn closed(point: impl Fn(f64) -> [f64; 3]) -> Polyline {
     let n = 400;
     let at = |k: usize| Vector3::from(point(std::f64::consts::TAU * k as f64 / n as f64));
     // A smooth curve without double points is a polygon that can be had.
-    let curve = Polyline::new((0..n).map(at).collect(), true).unwrap_or_else(|e| panic!("{e}"));
-    let ropelength = curve.length() / topo_knots::thickness(&curve).tau;
-    (curve, ropelength)
+    Polyline::new((0..n).map(at).collect(), true).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// A trefoil and its ropelength (that of the curve, not of the tight knot).
-pub(crate) fn trefoil() -> (Polyline, f64) {
+/// A trefoil, not tight.
+pub(crate) fn trefoil() -> Polyline {
     closed(trefoil_at)
 }
 
@@ -247,7 +244,7 @@ pub(super) fn trefoil_at(u: f64) -> [f64; 3] {
     ]
 }
 
-fn figure_eight() -> (Polyline, f64) {
+fn figure_eight() -> Polyline {
     closed(|u| {
         let r = 2.0 + (2.0 * u).cos();
         [

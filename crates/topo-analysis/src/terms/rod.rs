@@ -1,6 +1,6 @@
 //! Terms of a rod: contact, friction, twist, stretch.
 
-use topo_core::{CpuClock, Interrupt, Polyline};
+use topo_core::{CpuClock, Interrupt};
 use topo_rod::contact::ContactPairs;
 use topo_rod::energy::{At, Bend, EnergyTerm, Force, Stiffness, Stretch};
 use topo_rod::{
@@ -95,11 +95,11 @@ fn run(
     interrupt: &Interrupt,
 ) -> Result<Taken, AnalysisError> {
     let clock = CpuClock::start();
-    let (curve, ropelength): (Polyline, f64) = trefoil();
+    let curve = trefoil();
     let accuracy = Accuracy::default();
     let run = || {
         let guards = Guards::default();
-        let battery = RodBattery::new(parameters, &accuracy, guards, &curve, ropelength)?;
+        let battery = RodBattery::new(parameters, &accuracy, guards, &curve)?;
         let charged = battery.charge(&ChargeSettings::default(), interrupt)?;
         let settings = DischargeSettings {
             until_released: 0.99,
@@ -128,7 +128,7 @@ fn run(
 
 /// Evaluates bending without or with stretch: a rod always has both, since its edges have no other hold on their length.
 fn evaluate(n_edges: usize, with: bool) -> Result<Taken, AnalysisError> {
-    let (curve, _) = trefoil();
+    let curve = trefoil();
     let curve = curve.resampled(n_edges).map_err(|e| refused(e.into()))?;
     let state = RodState::new(&curve, curve.length(), 0.0).map_err(refused)?;
     let mut geometry = Geometry::default();

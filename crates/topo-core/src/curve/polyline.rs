@@ -123,6 +123,18 @@ impl Polyline {
         self.vertices.iter().map(|v| v / n).sum()
     }
 
+    /// The mirror image in the plane z = 0: lengths and angles to the bit, the writhe with the other sign.
+    pub fn mirrored(&self) -> Self {
+        Self {
+            vertices: self
+                .vertices
+                .iter()
+                .map(|v| V::new(v.x, v.y, -v.z))
+                .collect(),
+            closed: self.closed,
+        }
+    }
+
     /// The polyline with every coordinate multiplied by `factor`.
     ///
     /// # Errors
@@ -189,6 +201,8 @@ mod tests {
                 prop_assert!(curve.edge_lengths().iter().all(|l| l.is_finite() && *l > 0.0));
                 prop_assert!(curve.centroid().iter().all(|x| x.is_finite()));
                 prop_assert!(curve.writhe().is_finite());
+                prop_assert_eq!(curve.mirrored().edge_lengths(), curve.edge_lengths());
+                prop_assert_eq!(curve.mirrored().mirrored(), curve);
             }
         }
     }

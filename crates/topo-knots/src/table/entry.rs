@@ -145,6 +145,11 @@ impl KnotEntry {
                 "`invariants.alexander` = {alexander:?} is not a knot's: give all coefficients, symmetric, the first positive, with sum 1 or -1"
             )));
         }
+        if file.crossing_number == 0 && alexander != [1] {
+            return Err(fault(format!(
+                "`crossing_number` = 0 is the unknot's, whose `invariants.alexander` is [1] and not {alexander:?}"
+            )));
+        }
         if at_minus_one.unsigned_abs() != u128::from(determinant) {
             return Err(fault(format!(
                 "`invariants.determinant` = {determinant} is not |Delta(-1)| = {} of `alexander`",
@@ -327,21 +332,25 @@ impl KnotEntry {
         self.name.contains('#')
     }
 
+    /// Whether it is the unknot, which has no crossing.
+    pub fn is_unknot(&self) -> bool {
+        self.crossing_number == 0
+    }
+
+    /// Whether the name is that of a mirror image: it begins with `m`.
+    pub fn is_mirror_image(&self) -> bool {
+        self.name.starts_with('m')
+    }
+
     /// The entry of the mirror image: negated word and signature, a leading `m` added to or removed from each alias and factor's name.
     pub fn mirror(&self) -> Self {
-        let mirrored = |factor: &str| match factor.strip_prefix('m') {
-            Some(rest) => rest.to_owned(),
-            None => format!("m{factor}"),
-        };
-        let name = self.name.split('#').map(mirrored);
-        let name = name.collect::<Vec<_>>().join("#");
         Self {
-            name,
+            name: mirror_name(&self.name),
             braid: negated(&self.braid),
             other_braids: self.other_braids.iter().map(|word| negated(word)).collect(),
             invariants: self.invariants.mirror(),
             jones: self.jones.as_ref().map(Jones::mirror),
-            aliases: self.aliases.iter().map(|name| mirrored(name)).collect(),
+            aliases: self.aliases.iter().map(|name| toggled(name)).collect(),
             start: self.start.as_ref().map(StartCurve::mirror),
             ..self.clone()
         }
@@ -386,6 +395,18 @@ impl KnotEntry {
             ));
         }
         Ok(found)
+    }
+}
+
+/// Name of the mirror image: each factor gains or loses its leading `m`, as `m3_1` for `3_1` and `3_1#m3_1` for `m3_1#3_1`.
+pub fn mirror_name(name: &str) -> String {
+    name.split('#').map(toggled).collect::<Vec<_>>().join("#")
+}
+
+fn toggled(factor: &str) -> String {
+    match factor.strip_prefix('m') {
+        Some(rest) => rest.to_owned(),
+        None => format!("m{factor}"),
     }
 }
 

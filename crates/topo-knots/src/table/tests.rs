@@ -7,7 +7,7 @@ use crate::{V, closed_braid, thickness, thickness_brute_force, windowed_half_dis
 fn builtin_table_is_complete() {
     let table = KnotTable::builtin();
     let names: Vec<&str> = table.names().collect();
-    let mut expected = Vec::new();
+    let mut expected = vec!["0_1".to_owned()];
     for (crossings, n) in [(3, 1), (4, 1), (5, 2), (6, 3), (7, 7), (8, 21)] {
         expected.extend((1..=n).map(|k| format!("{crossings}_{k}")));
     }
@@ -30,6 +30,7 @@ fn builtin_table_is_complete() {
         );
     }
     assert_eq!(table.primes_up_to(7).count(), 14);
+    assert!(table.primes_up_to(99).all(|knot| knot.name != "0_1"));
     assert_eq!(table.complete_up_to(), 8);
     assert_eq!(KnotTable::default().complete_up_to(), 2);
 }
@@ -70,6 +71,26 @@ fn jones_polynomials_of_the_table() {
             "{}",
             knot.name
         );
+    }
+}
+
+#[test]
+fn labels_of_mirror_images() {
+    let table = KnotTable::builtin();
+    for (label, mirror) in [
+        ("3_1", "m3_1"),
+        ("m3_1", "3_1"),
+        ("0_1", "0_1"),
+        ("4_1", "4_1"),
+        ("3_1#m3_1", "3_1#m3_1"),
+        ("4_1#4_1", "4_1#4_1"),
+        ("3_1#3_1", "m3_1#m3_1"),
+        ("6_1|m6_1", "6_1|m6_1"),
+        ("8_21|5_1", "m8_21|m5_1"),
+        ("unknown(1 -1 1)", "unknown(1 -1 1)"),
+        ("", ""),
+    ] {
+        assert_eq!(table.mirror_label(label), mirror);
     }
 }
 
@@ -133,6 +154,11 @@ fn files_with_faults_are_named() {
         ("\"x_1\"", "\"y_1\"", "name"),
         ("determinant = 3", "determinant = 5", "determinant"),
         ("[1, -1, 1]", "[1, -1, 2]", "alexander"),
+        (
+            "crossing_number = 3",
+            "crossing_number = 0",
+            "crossing_number",
+        ),
         ("signature = -2", "signature = 1", "signature"),
         (
             "signature = -2",

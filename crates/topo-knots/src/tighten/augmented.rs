@@ -3,13 +3,11 @@
 use std::collections::HashMap;
 use std::f64::consts::PI;
 
-use topo_core::{Polyline, SparseCholesky};
+use topo_core::{Polyline, SparseCholesky, closest_points, vertex_radius};
 use topo_rod::contact::close_pairs;
 
 use super::constraints::radius_gradient;
 use super::lbfgs::minimise;
-use crate::segment::closest_points;
-use crate::thickness::vertex_radius;
 use crate::{V, thickness};
 
 /// Strands nearer than this have a strut; further ones are watched only after the list is made anew.

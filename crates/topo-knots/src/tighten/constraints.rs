@@ -2,11 +2,10 @@
 
 use std::f64::consts::PI;
 
+use topo_core::{closest_points, vertex_radius};
 use topo_rod::contact::close_pairs;
 
 use crate::V;
-use crate::segment::closest_points;
-use crate::thickness::vertex_radius;
 
 /// Vertices with a larger radius of curvature (in tube radii) cannot become sharp in one step.
 const KINK_REACH: f64 = 3.0;

@@ -2,10 +2,9 @@
 
 use std::f64::consts::PI;
 
-use topo_core::Polyline;
+use topo_core::{Polyline, closest_points};
 use topo_rod::contact::close_pairs;
 
-use crate::segment::closest_points;
 use crate::{V, thickness};
 
 /// Struts of a tight closed curve: the two ends of each on the centreline, the shortest first.

@@ -1,7 +1,7 @@
 //! Discharging: the cut rod opens until its elastic energy is released.
 
 use serde::{Deserialize, Serialize};
-use topo_core::{Interrupt, Sample, Schedule, Scheduled, StopReason};
+use topo_core::{Interrupt, Ledger, Sample, Schedule, Scheduled, StopReason};
 
 use super::RodSimulation;
 use super::cut::CutRod;
@@ -12,7 +12,8 @@ use crate::{Ends, RodError, RodModel, RodState};
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct DischargeSettings {
-    /// Share of the elastic energy after the cut whose release ends the run.
+    /// Share of the elastic energy whose release ends the run: of that which the cut left, so that the share of what was stored
+    /// before the cut is released too.
     pub until_released: f64,
     /// Longest time followed, in T_0.
     pub longest: f64,
@@ -43,8 +44,10 @@ pub struct Discharge {
     pub at: f64,
     /// Energy per part that the cut itself removed (contact included), in E_0.
     pub removed: f64,
-    /// Elastic energy just after the cut, in E_0: released shares count from it.
+    /// Elastic energy just before the cut, in E_0: released shares count from it, and what the cut removes is released at once.
     pub start: f64,
+    /// Elastic energy just after the cut, in E_0.
+    pub after_cut: f64,
     /// When the tips had parted so far that they count as separate strands, in T_0.
     pub parted: Option<f64>,
     /// The run.
@@ -87,14 +90,15 @@ impl CutRod {
             &state,
         )?;
         model.set_cyclic(true);
-        let closed: f64 = self.charged.record().report.ledger.stored_total();
+        let elastic_of =
+            |books: &Ledger| books.stored_total() - books.stored_in("contact").unwrap_or(0.0);
+        let before = &self.charged.record().report.ledger;
+        let (closed, start) = (before.stored_total(), elastic_of(before));
         model.start(&state)?;
         let scales = Scales::of(&state);
-        let elastic = |s: &Sample<'_, RodState>| {
-            s.ledger.stored_total() - s.ledger.stored_in("contact").unwrap_or(0.0)
-        };
+        let elastic = |s: &Sample<'_, RodState>| elastic_of(s.ledger);
         let opened = model.account().stored_total();
-        let start = opened - model.account().stored_in("contact").unwrap_or(0.0);
+        let after_cut = elastic_of(model.account());
         model.record_cut(closed, closed - opened);
         let window = model.pairs().window().outer();
         let mut simulation = RodSimulation::new(model, state, battery.accuracy(), interrupt)?;
@@ -106,7 +110,7 @@ impl CutRod {
         )?;
         let (until, goal) = (
             settings.longest * scales.time,
-            (1.0 - settings.until_released) * start,
+            (1.0 - settings.until_released) * after_cut,
         );
         let mut parted = None;
         let stop = {
@@ -139,6 +143,7 @@ impl CutRod {
             at: self.at,
             removed: (closed - opened) / scales.energy,
             start: start / scales.energy,
+            after_cut: after_cut / scales.energy,
             parted,
             record,
         })

@@ -95,7 +95,7 @@ mod tests {
         let text = report(&args, &table).unwrap();
         assert!(text.starts_with("m3_1, the mirror image of 3_1\n") && text.contains("certain:"));
         args.open = true;
-        assert!(report(&args, &table).unwrap().starts_with("3_1 in "));
+        assert!(report(&args, &table).unwrap().starts_with("m3_1 in "));
         args.file = folder.path().join("two.xyz");
         std::fs::write(&args.file, "0 0 0\n1 0 0\n0 1 0\n\n9 9 9\n9 8 9\n8 9 9\n").unwrap();
         args.open = false;

@@ -12,7 +12,8 @@ use crate::plot::text;
 
 /// Shades of the knot-type bands, by crossing number: the unknot is left white.
 fn band_color(knot: &str) -> Option<(String, f64)> {
-    let crossings: u32 = knot.split('_').next()?.parse().ok()?;
+    let crossings = knot.trim_start_matches('m').split('_').next()?;
+    let crossings: u32 = crossings.parse().ok()?;
     let shade = match crossings {
         0 => return None,
         3 => "#d7e3f4",
@@ -63,14 +64,15 @@ pub fn draw(
         .transpose()?
         .unwrap_or_default();
 
-    let scaled = |m: &[Moment]| -> Vec<(f64, f64)> {
-        let start = m.first().map_or(1.0, |m| m.energy).max(1e-300);
+    // as released shares, from the energy before the cut
+    let scaled = |m: &[Moment], of: Option<&Case>| -> Vec<(f64, f64)> {
+        let start = of.map_or(1.0, |c| c.first().energy).max(1e-300);
         m.iter()
             .filter(|m| m.time > 0.0)
             .map(|m| (m.time, m.energy / start))
             .collect()
     };
-    let (curve, dashed) = (scaled(&moments), scaled(&other));
+    let (curve, dashed) = (scaled(&moments, Some(case)), scaled(&other, twisted));
     let (_, last) = bounds(curve.iter().chain(&dashed).map(|p| p.0));
     let first = (last / 3e4)
         .max(bounds(curve.iter().map(|p| p.0)).0)

@@ -1,12 +1,14 @@
 //! Closest points of two segments, with relative tolerances so that edges of any length are served.
 
-use crate::V;
+use nalgebra::Vector3;
+
+type V = Vector3<f64>;
 
 /// Squared distance of the segments a-b and c-d and the parameters of the closest points, each in [0, 1].
 ///
 /// # References
 /// `ericson2005`
-pub(crate) fn closest_points(a: &V, b: &V, c: &V, d: &V) -> (f64, f64, f64) {
+pub fn closest_points(a: &V, b: &V, c: &V, d: &V) -> (f64, f64, f64) {
     let (u, v, w) = (b - a, d - c, a - c);
     let (uu, uv, vv) = (u.norm_squared(), u.dot(&v), v.norm_squared());
     let (uw, vw) = (u.dot(&w), v.dot(&w));

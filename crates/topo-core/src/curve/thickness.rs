@@ -1,9 +1,11 @@
 //! Thickness of a polygon: the radius of the fattest tube around it.
 
-use topo_core::Polyline;
+use nalgebra::Vector3;
 
-use crate::V;
-use crate::segment::closest_points;
+use super::polyline::Polyline;
+use super::segment::closest_points;
+
+type V = Vector3<f64>;
 
 /// Thickness of a polygon and the two quantities that bound it.
 ///
@@ -36,6 +38,17 @@ impl Thickness {
             dcsd,
             tau: min_rad.min(0.5 * dcsd),
         }
+    }
+}
+
+impl Polyline {
+    /// Length over thickness, in which a tube of the same shape is as long whatever its scale: 2π for a circle, 0 for a
+    /// straight line, which no tube is too fat for, and infinite for a polygon that touches itself.
+    ///
+    /// # Validation
+    /// `circle_is_bounded_by_its_radius`, `a_curve_that_crosses_itself_has_no_thickness`.
+    pub fn ropelength(&self) -> f64 {
+        self.length() / thickness(self).tau
     }
 }
 
@@ -82,7 +95,7 @@ fn head(x: &[V], edge: usize) -> &V {
 }
 
 /// Radius of curvature at a vertex with the given edges before and after.
-pub(crate) fn vertex_radius(before: &V, after: &V) -> f64 {
+pub fn vertex_radius(before: &V, after: &V) -> f64 {
     let (a, b) = (before.norm(), after.norm());
     // tan(theta / 2) = |u x v| / (|u| |v| + u . v), without cancellation at small angles.
     let tangent_of_half = before.cross(after).norm() / (a * b + before.dot(after)).max(0.0);
@@ -166,6 +179,16 @@ mod tests {
         let inscribed = 2.0 * (std::f64::consts::PI / n as f64).cos();
         assert!((found.min_rad - inscribed).abs() < 1e-12);
         assert!((found.dcsd - 2.0 * inscribed).abs() < 1e-6, "{found:?}");
+        let ropelength = circle(800, 7.0).ropelength();
+        assert!((ropelength / std::f64::consts::TAU - 1.0).abs() < 1e-5);
+    }
+
+    #[test]
+    fn a_curve_that_crosses_itself_has_no_thickness() {
+        let at = |u: f64| V::new(u.sin(), (2.0 * u).sin(), 0.0);
+        let eight = (0..40).map(|k| at(std::f64::consts::TAU * k as f64 / 40.0 + 0.01));
+        let eight = Polyline::new(eight.collect(), true).expect("a figure of eight");
+        assert!(thickness(&eight).tau < 1e-12 && eight.ropelength() > 1e12);
     }
 
     #[test]
