@@ -13,9 +13,9 @@ pub struct TypedSample {
     pub sample: usize,
     /// Its time.
     pub time: f64,
-    /// Most frequent type over the closures.
+    /// Most frequent type over the closures, by the hand that is more frequent.
     pub knot: String,
-    /// Share of the closures with that type.
+    /// Share of the closures with that type, of either hand.
     pub probability: f64,
 }
 
@@ -62,7 +62,7 @@ impl Timeline {
         let look = |k: usize| -> Result<Option<TypedSample>, AnalysisError> {
             let (time, vertices) = samples[k];
             let found = identify_open(vertices, settings.closures, seed, table)?;
-            let (knot, probability) = found.distribution.into_iter().next().unwrap_or_default();
+            let (knot, probability) = most_frequent(found.distribution, table);
             Ok(Some(TypedSample {
                 sample: k,
                 time,
@@ -131,12 +131,45 @@ impl Timeline {
     }
 }
 
+/// The most frequent type and its share, both hands of a type counted together: of an open curve, closures find either.
+fn most_frequent(distribution: Vec<(String, f64)>, table: &KnotTable) -> (String, f64) {
+    let pooled = |label: &str, share: f64| {
+        let mirror = table.mirror_label(label);
+        let other = distribution
+            .iter()
+            .find(|(l, _)| *l == mirror && l != label);
+        share + other.map_or(0.0, |(_, share)| *share)
+    };
+    let mut best = (String::new(), 0.0);
+    for (label, share) in &distribution {
+        let share = pooled(label, *share);
+        // The hand that comes first is the more frequent one.
+        if share > best.1 {
+            best = (label.clone(), share);
+        }
+    }
+    best
+}
+
 /// Name of the unknot.
 pub const UNKNOT: &str = "0_1";
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn hands_of_a_type_count_together() {
+        let table = KnotTable::builtin();
+        let of = |list: &[(&str, f64)]| {
+            let list = list.iter().map(|(l, p)| ((*l).to_owned(), *p)).collect();
+            most_frequent(list, &table)
+        };
+        let both = of(&[("0_1", 0.44), ("m3_1", 0.25), ("3_1", 0.22), ("4_1", 0.09)]);
+        assert_eq!(both, ("m3_1".to_owned(), 0.47));
+        assert_eq!(of(&[("4_1", 0.5), ("3_1", 0.5)]).0, "4_1");
+        assert_eq!(of(&[]).1, 0.0);
+    }
 
     fn timeline(names: &[&str]) -> Timeline {
         let typed = |(k, n): (usize, &&str)| TypedSample {
