@@ -118,6 +118,8 @@ impl Mode {
 struct Decay {
     error: f64,
     n_steps: u64,
+    /// Mean step while the rate was measured.
+    mean_step: f64,
     n_updates: u64,
     ledger_residual: f64,
 }
@@ -169,11 +171,13 @@ fn decay_on(mode: Mode, n: usize, tilt: f64, tolerance: f64, flow: bool) -> Deca
     };
     let (from, to) = (crossing(0.5), crossing(0.05));
     let rate = (0.5_f64 / 0.05).ln() / (2.0 * (to - from));
+    let between = curve.time().iter().filter(|t| (from..to).contains(*t));
     let unit = mode.wave_number().powi(2);
     let report = &run.record.report;
     Decay {
         error: rate / unit / mode.exact(&material, flow) - 1.0,
         n_steps: report.n_steps,
+        mean_step: (to - from) / between.count() as f64,
         n_updates: report.flow.map_or(0, |f| f.counters.n_updates),
         ledger_residual: report.ledger_residual,
     }
@@ -217,6 +221,18 @@ fn val_tilts_decay_at_the_rates_of_the_coupled_equations() {
             flowing.ledger_residual
         );
     }
+}
+
+#[test]
+fn law_rates_between_plates_are_of_order_two_in_the_step() {
+    let [coarse, fine, limit] = [1e-5, 1e-8, 1e-9].map(|tol| decay(Mode::Even, tol, true));
+    let ratio = (coarse.error - limit.error) / (fine.error - limit.error);
+    let order = ratio.abs().ln() / (coarse.mean_step / fine.mean_step).ln();
+    println!(
+        "steps of {:.2} and {:.2}: order {order:.2}",
+        coarse.mean_step, fine.mean_step
+    );
+    assert!(order > 1.9, "{order}");
 }
 
 #[test]

@@ -87,7 +87,8 @@ impl Hessian<'_> {
             let before = matrix.beside.last().copied().unwrap_or(0.0);
             matrix.diagonal.push(diagonal);
             let next = self.advance(&mut vectors, diagonal, before);
-            let ends = !(next > 1e-13 * diagonal.abs());
+            // Not a number ends it too.
+            let ends = next.is_nan() || next <= 1e-13 * diagonal.abs();
             if step.is_multiple_of(CHECK_EVERY) || ends {
                 let eigenvalue = matrix.eigenvalue(0);
                 let combination = matrix.eigenvector(eigenvalue);
