@@ -6,7 +6,9 @@ mod tridiagonal;
 
 pub(crate) use lanczos::{Accuracy, LowestMode};
 
-use fearless_simd::{Simd, dispatch};
+use std::ops::{Add, Mul, Sub};
+
+use fearless_simd::{Simd, SimdBase, dispatch, f64x8};
 
 use crate::kernel::run::{Combination, Kernel};
 use crate::tensor::{Tensor5, contract};
@@ -130,50 +132,89 @@ impl<'a> Hessian<'a> {
     }
 }
 
-/// The derivative of the bulk part along `p`, with its three constants.
-#[inline(always)]
-fn bulk_part([a, b, c]: [f64; 3], q: &Tensor5, p: &Tensor5) -> Tensor5 {
-    let (qq, qp) = (contract(q, q), contract(q, p));
-    let third = 2.0 * qp / 3.0;
-    // twice the traceless part of QP made symmetric
-    let product = [
-        2.0 * (q[0] * p[0] + q[1] * p[1] + q[2] * p[2]) - third,
-        q[1] * (p[0] + p[3]) + p[1] * (q[0] + q[3]) + q[2] * p[4] + p[2] * q[4],
-        q[1] * p[4] + p[1] * q[4] - q[2] * p[3] - p[2] * q[3],
-        2.0 * (q[1] * p[1] + q[3] * p[3] + q[4] * p[4]) - third,
-        q[1] * p[2] + p[1] * q[2] - q[4] * p[0] - p[4] * q[0],
-    ];
-    std::array::from_fn(|i| (a + c * qq) * p[i] + b * product[i] + 2.0 * c * qp * q[i])
+/// What one number and eight of them side by side can do.
+trait Field:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Mul<f64, Output = Self>
+{
 }
 
-/// Sums side by side, so that additions need not wait for each other.
+impl<T> Field for T where
+    T: Copy + Add<Output = T> + Sub<Output = T> + Mul<Output = T> + Mul<f64, Output = T>
+{
+}
+
+/// The double contraction.
+#[inline(always)]
+fn product_of<T: Field>(a: &[T; 5], b: &[T; 5]) -> T {
+    let off = a[1] * b[1] + a[2] * b[2] + a[4] * b[4];
+    a[0] * b[0] + a[3] * b[3] + (a[0] + a[3]) * (b[0] + b[3]) + off * 2.0
+}
+
+/// The derivative of the bulk part along `p`, with its three constants.
+#[inline(always)]
+fn bulk_part<T: Field>([a, b, c]: [f64; 3], q: &[T; 5], p: &[T; 5]) -> [T; 5] {
+    let (qq, qp) = (product_of(q, q), product_of(q, p));
+    let third = qp * (2.0 / 3.0);
+    // Twice the traceless part of QP made symmetric.
+    let product = [
+        (q[0] * p[0] + q[1] * p[1] + q[2] * p[2]) * 2.0 - third,
+        q[1] * (p[0] + p[3]) + p[1] * (q[0] + q[3]) + q[2] * p[4] + p[2] * q[4],
+        q[1] * p[4] + p[1] * q[4] - q[2] * p[3] - p[2] * q[3],
+        (q[1] * p[1] + q[3] * p[3] + q[4] * p[4]) * 2.0 - third,
+        q[1] * p[2] + p[1] * q[2] - q[4] * p[0] - p[4] * q[0],
+    ];
+    let (linear, cubic) = (qq * c, qp * (2.0 * c));
+    let mut part = *p;
+    for i in 0..5 {
+        part[i] = p[i] * a + linear * p[i] + product[i] * b + cubic * q[i];
+    }
+    part
+}
+
+/// Numbers side by side; fixed, so that results do not depend on the machine.
 const WIDTH: usize = 8;
 
+// Loops, not closures: only what is surely inlined runs on the vector unit.
 #[inline(always)]
 fn add_to_run<S: Simd>(
-    _simd: S,
+    simd: S,
     bulk: [f64; 3],
     q: [&[f64]; 5],
     p: [&[f64]; 5],
-    mut out: [&mut [f64]; 5],
+    out: [&mut [f64]; 5],
 ) -> f64 {
     let n = q[0].len();
-    let (q, p) = (q.map(|x| &x[..n]), p.map(|x| &x[..n]));
-    let mut sums = [0.0; WIDTH];
-    let mut cell = |i: usize, sum: &mut f64| {
-        let (q, p) = (q.map(|x| x[i]), p.map(|x| x[i]));
-        let part = bulk_part(bulk, &q, &p);
-        let all: Tensor5 = std::array::from_fn(|c| out[c][i] + part[c]);
-        (0..5).for_each(|c| out[c][i] = all[c]);
-        *sum += contract(&p, &all);
-    };
-    for start in (0..n - n % WIDTH).step_by(WIDTH) {
-        for (lane, sum) in sums.iter_mut().enumerate() {
-            cell(start + lane, sum);
+    let whole = n - n % WIDTH;
+    let zero = f64x8::splat(simd, 0.0);
+    let mut sums = zero;
+    for start in (0..whole).step_by(WIDTH) {
+        let (mut here, mut along) = ([zero; 5], [zero; 5]);
+        for c in 0..5 {
+            here[c] = f64x8::from_slice(simd, &q[c][start..start + WIDTH]);
+            along[c] = f64x8::from_slice(simd, &p[c][start..start + WIDTH]);
         }
+        let mut all = bulk_part(bulk, &here, &along);
+        for c in 0..5 {
+            let to = &mut out[c][start..start + WIDTH];
+            all[c] += f64x8::from_slice(simd, to);
+            all[c].store_slice(to);
+        }
+        sums += product_of(&along, &all);
     }
-    (n - n % WIDTH..n).for_each(|i| cell(i, &mut sums[0]));
-    sums.iter().sum()
+    let mut sum = sums.to_array().iter().sum();
+    for i in whole..n {
+        let (mut here, mut along) = ([0.0; 5], [0.0; 5]);
+        for c in 0..5 {
+            (here[c], along[c]) = (q[c][i], p[c][i]);
+        }
+        let mut all = bulk_part(bulk, &here, &along);
+        for c in 0..5 {
+            all[c] += out[c][i];
+            out[c][i] = all[c];
+        }
+        sum += product_of(&along, &all);
+    }
+    sum
 }
 
 #[inline(always)]
