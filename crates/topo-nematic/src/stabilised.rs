@@ -34,7 +34,8 @@ pub(crate) trait Drift<T> {
 /// ```
 ///
 /// Λ runs from its value at the start to the one extrapolated from the step before (predictor), then to the one at the end so found
-/// (corrector): order two, also next to walls where G and Γ H cancel, and stable, as Λ is less than (1 + ω) Γ H for the stiffest mode.
+/// (corrector): order two (1.8 at a fixed step in layers next to walls, where G and Γ H cancel), and stable, as Λ is less than
+/// (1 + ω) Γ H for the stiffest mode.
 /// The error estimate compares the step with the trapezoidal rule on the *whole* rate, each end with the drift of its own.
 pub(crate) struct Stabilised<T> {
     pub q: Vec<T>,
