@@ -57,8 +57,11 @@ pub const CLAIMS: [Claim; 15] = [
         figure: "elastic-charging",
         depends: "amphichiral knots being started from the better of two mirror images",
         rule: "by the median over twists, every chiral knot sees the hand more than three times as much as the amphichiral ones from one image alone; in part if the median of the chiral knots does, or if the energy of the other image is not in the table",
-        look: charging::chirality,
-        other: None,
+        look: charging::chirality_by_median,
+        other: Some(Other {
+            reading: "By the largest over twists",
+            look: charging::chirality_by_largest,
+        }),
         doubt: flags,
     },
     Claim {
@@ -131,7 +134,7 @@ pub const CLAIMS: [Claim; 15] = [
         text: "Some knots are superslow for a reason of topology.",
         published: "Fig. 3d, e",
         figure: "elastic-discharge",
-        depends: CUT,
+        depends: "the cut site, the range of friction, how L/h is read (“hard” stretches rods of seven crossings, and that energy goes at once; “own-length” has longer rods for longer knots, which take longer in T₀ to straighten)",
         rule: "one cut, at the largest energy density: t99 of some untwisted knot is more than 1.5 times the median of the knots by default and under every other choice of friction and reading; in part if by default only",
         look: |t| robust(t, Site::Largest),
         other: Some(Other {

@@ -123,3 +123,60 @@ pub fn markdown(rows: &[Row]) -> String {
     }
     table
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::Cut;
+
+    /// Writes 3_1, 7_4 and two others, untwisted, with the given t99 and a near tie that does not count.
+    fn write(folder: &Path, t99: [f64; 4]) {
+        let mut rows = Vec::new();
+        for (knot, t99) in ["3_1", "5_1", "5_2", "7_4"].into_iter().zip(t99) {
+            for (cut, t99) in [(0.1, t99), (0.6, 99.0)] {
+                rows.push(Cut {
+                    knot: knot.to_owned(),
+                    cut,
+                    t99: Some(t99),
+                    ..Cut::default()
+                });
+            }
+        }
+        std::fs::create_dir_all(folder).unwrap();
+        topo_analysis::write_table(&folder.join("sweep.csv"), &rows).unwrap();
+    }
+
+    #[test]
+    fn the_study_compares_the_knots_one_by_one_with_the_default() {
+        let dir = tempfile::tempdir().unwrap();
+        assert!(study(dir.path()).unwrap().is_empty());
+        write(&dir.path().join("elastic"), [20.0, 10.0, 10.0, 30.0]);
+        write(
+            &dir.path().join("elastic-contact-range"),
+            [20.0, 10.0, 10.0, 30.0],
+        );
+        // other readings are no part of it, nor is one other choice a study
+        write(&dir.path().join("elastic-tight"), [20.0, 10.0, 10.0, 30.0]);
+        assert!(study(dir.path()).unwrap().is_empty());
+        write(
+            &dir.path().join("elastic-friction-range-1.2"),
+            [10.0, 20.0, 20.0, 60.0],
+        );
+        let rows = study(dir.path()).unwrap();
+        let ranges: Vec<&str> = rows.iter().map(|r| r.range.as_str()).collect();
+        assert_eq!(ranges, ["2h", "d_c", "1.2 d_c"]);
+        assert_eq!(
+            (rows[0].median_t99, rows[0].median_t99_over_default),
+            (15.0, 1.0)
+        );
+        let last = &rows[2];
+        assert_eq!((last.median_t99, last.median_t99_over_default), (20.0, 2.0));
+        assert_eq!(last.t99_of_3_1_over_median, Some(0.5));
+        assert_eq!(last.t99_of_7_4_over_median, Some(3.0));
+        let table = markdown(&rows);
+        assert!(
+            table.contains("| 20 | 1.2 d_c | 0.1 | 4 | 20 | 2 | 0.5 | 3 | 0 |"),
+            "{table}"
+        );
+    }
+}

@@ -79,6 +79,17 @@ fn claim_4_needs_chiral_knots_above_amphichiral_ones() {
     assert_eq!(verdict(4, &made(0.012, &["5_1"], Some(0.002))), Partly);
     assert_eq!(verdict(4, &made(0.004, &[], Some(0.002))), NotConfirmed);
     assert_eq!(verdict(4, &made(0.002, &[], Some(0.012))), NotConfirmed);
+    // a difference that is seen at one twist only
+    let at_one = published(|r| {
+        r.energy_other_image = AMPHICHIRAL.contains(&r.knot.as_str()).then_some(1.002);
+        if r.energy_other_image.is_none() && r.twist == 0.25 {
+            r.energy = 1.03;
+        }
+    });
+    assert_eq!(
+        (verdict(4, &at_one), other(4, &at_one)),
+        (NotConfirmed, Confirmed)
+    );
     // nothing is known of one image alone
     assert_eq!(verdict(4, &made(0.012, &[], None)), Partly);
     assert_eq!(verdict(4, &made(0.0, &[], None)), NotConfirmed);
