@@ -8,12 +8,13 @@ mod phases;
 mod slow;
 #[cfg(test)]
 mod tests;
+mod times;
 
 use super::{Claim, Other, Said, Tables, Verdict, flagged};
-use crate::data::{Case, Cut, Sweep};
+use crate::data::{Cut, Sweep};
 use discharge::{fast_at_high_twist, knots_washed_out, slow_at_low_twist};
 use slow::{robust, slow_pair};
-use topo_analysis::median;
+use times::{Share, Site, tied, time, untwisted};
 
 const BRANCH: &str = "the branch that a start shape settles in (θ′h near ±1)";
 const CUT: &str = "the cut site, the range of friction, how L/h is read";
@@ -217,41 +218,4 @@ fn top(s: &Sweep) -> Option<f64> {
     let high = twists.iter().copied().fold(0.0, f64::max);
     let both = high > 0.0 && twists.iter().any(|t| (t + high).abs() < 1e-9);
     both.then_some(high)
-}
-
-/// Which cuts of a state count.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Site {
-    /// The one at the largest energy density, as published: the first of the table.
-    Largest,
-    /// All near ties, by their mean.
-    NearTies,
-}
-
-/// A discharge time of a row.
-type Share = fn(&Cut) -> Option<f64>;
-
-fn time(case: &Case, site: Site, share: Share) -> Option<f64> {
-    match site {
-        Site::Largest => share(case.first()),
-        Site::NearTies => case.spread(share).map(|[mean, ..]| mean),
-    }
-}
-
-/// What near ties say; `None` where each state was cut once.
-fn tied(t: &Tables, look: fn(&Tables, Site) -> Said) -> Said {
-    let cases = &of(t)?.cases;
-    let more = cases.iter().any(|c| c.cuts.len() > 1);
-    more.then(|| look(t, Site::NearTies)).flatten()
-}
-
-/// Knots, their times without twist, and these over the median of the knots.
-fn untwisted(s: &Sweep, site: Site, share: Share) -> Vec<(&str, f64, f64)> {
-    let each = |k| Some((k, time(s.at(k, 0.0)?, site, share)?));
-    let times: Vec<(&str, f64)> = s.knots().into_iter().filter_map(each).collect();
-    let Some(middle) = median(times.iter().map(|t| t.1)) else {
-        return Vec::new();
-    };
-    let over = |(k, t): (_, f64)| (k, t, t / middle);
-    times.into_iter().map(over).collect()
 }

@@ -5,8 +5,9 @@ use crate::data::{Case, Cut, series};
 use crate::plot::text;
 use topo_analysis::UNKNOT;
 
-/// Knots without a simpler one to pass through: below three crossings there is the unknot only, and 4_1, which is one crossing
-/// change from the unknot, is two from 3_1. Each of the other twelve is one change from a knot of fewer crossings.
+/// Knots without a simpler one to pass through: below three crossings there is the unknot only, and 4_1, which could pass through
+/// 3_1 only, becomes the unknot by a change of any of its four crossings. Each of the other twelve becomes a knot of fewer
+/// crossings by one change.
 pub const WITHOUT_INTERMEDIATE: [&str; 2] = ["3_1", "4_1"];
 
 /// Knot types of the discharge of a row, repetitions left out.

@@ -70,7 +70,7 @@ fn claim_9_counts_the_knots_that_have_a_simpler_one() {
     );
 }
 
-/// Crossing by crossing of the braid words of the table: twelve knots become a simpler knot by one change, 3_1 and 4_1 do not.
+/// Crossing by crossing of the braid words of the table: twelve knots become a simpler one by one change, 3_1 and 4_1 the unknot.
 #[test]
 fn all_but_two_knots_are_one_crossing_change_from_a_simpler_one() {
     let table = KnotTable::builtin();
