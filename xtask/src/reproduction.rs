@@ -2,13 +2,14 @@
 
 mod elastic;
 mod nematic;
+mod report;
+#[cfg(test)]
+mod tests;
 
-use crate::data::{self, Cut, NematicSweep, Sweep, read_csv};
+use crate::data::{Cut, NematicSweep, Sweep, read_csv};
 use crate::error::XtaskError;
-use crate::figures::Quality;
-use crate::plot::text::escape;
+pub use report::{section, write};
 use serde::Serialize;
-use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 /// How far a claim is borne out.
@@ -49,6 +50,14 @@ impl Verdict {
             _ => Self::Partly,
         }
     }
+
+    /// Runs that are in doubt confirm nothing, at most in part.
+    fn doubted(self, in_doubt: bool) -> Self {
+        match self {
+            Self::Confirmed if in_doubt => Self::Partly,
+            other => other,
+        }
+    }
 }
 
 /// What the tables say.
@@ -64,8 +73,32 @@ struct Claim {
     figure: &'static str,
     /// What the outcome depends on.
     depends: &'static str,
+    /// The rule that decides the outcome, in words: what `look` does, so that both change together.
+    rule: &'static str,
     /// What the tables say; `None` where they lack what is needed.
     look: fn(&Tables) -> Said,
+    /// The same claim under another reading of the experiment; it is told, the outcome is that of `look`.
+    other: Option<Other>,
+    /// What speaks against the runs that the claim rests on; it is then confirmed in part at most.
+    doubt: fn(&Tables) -> Option<String>,
+}
+
+/// Another reading of a claim.
+struct Other {
+    /// What is done differently.
+    reading: &'static str,
+    /// What the tables say then.
+    look: fn(&Tables) -> Said,
+}
+
+/// Says how many of the runs, given by their warnings, are flagged; `None` if none is.
+fn flagged<'a>(warnings: impl IntoIterator<Item = &'a str>) -> Option<String> {
+    let (mut all, mut with) = (0, 0);
+    for text in warnings {
+        all += 1;
+        with += usize::from(!text.is_empty());
+    }
+    (with > 0).then(|| format!("{with} of {all} runs carry warnings"))
 }
 
 /// What is looked at.
@@ -80,12 +113,55 @@ struct Tables {
 /// A claim with what was found.
 #[derive(Debug, Serialize)]
 pub struct Finding {
+    /// Its place in the list of all claims, from 1 on.
+    number: usize,
     claim: &'static str,
     published: &'static str,
     figure: &'static str,
     found: String,
     verdict: Verdict,
+    rule: &'static str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    other_reading: Option<OtherFound>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    doubt: Option<String>,
     depends_on: &'static str,
+}
+
+/// What was found under another reading.
+#[derive(Debug, Serialize)]
+struct OtherFound {
+    reading: &'static str,
+    found: String,
+    verdict: Verdict,
+}
+
+impl Claim {
+    /// What the tables say to the claim; `None` where they lack what is needed.
+    fn finding(&self, number: usize, tables: &Tables) -> Option<Finding> {
+        let (found, verdict) = (self.look)(tables)?;
+        let doubt = (self.doubt)(tables);
+        let other_reading = self.other.as_ref().and_then(|other| {
+            let (found, verdict) = (other.look)(tables)?;
+            Some(OtherFound {
+                reading: other.reading,
+                found,
+                verdict: verdict.doubted(doubt.is_some()),
+            })
+        });
+        Some(Finding {
+            number,
+            claim: self.text,
+            published: self.published,
+            figure: self.figure,
+            found,
+            verdict: verdict.doubted(doubt.is_some()),
+            rule: self.rule,
+            other_reading,
+            doubt,
+            depends_on: self.depends,
+        })
+    }
 }
 
 /// All claims that the tables of a results folder can say something to.
@@ -115,162 +191,9 @@ pub fn findings(results: &Path) -> Result<Vec<Finding>, XtaskError> {
             other => Some(other?),
         },
     };
-    let said = |c: &Claim| {
-        let (found, verdict) = (c.look)(&tables)?;
-        Some(Finding {
-            claim: c.text,
-            published: c.published,
-            figure: c.figure,
-            found,
-            verdict,
-            depends_on: c.depends,
-        })
-    };
     let all = elastic::CLAIMS.iter().chain(&nematic::CLAIMS);
-    Ok(all.filter_map(said).collect())
-}
-
-/// Writes `reproduction.json` and `reproduction.md` into the results folder.
-pub fn write(results: &Path, quality: Quality, findings: &[Finding]) -> Result<(), XtaskError> {
-    let mut json = serde_json::to_string_pretty(&serde_json::json!({
-        "quality": quality,
-        "findings": findings,
-    }))
-    .map_err(|e| XtaskError::Drawing {
-        reason: format!("reproduction: {e}"),
-    })?;
-    json.push('\n');
-    data::write(&results.join("reproduction.json"), json.as_bytes())?;
-    data::write(
-        &results.join("reproduction.md"),
-        markdown(quality, findings).as_bytes(),
-    )
-}
-
-/// How many of each verdict, in words.
-fn summary(findings: &[Finding]) -> String {
-    let count = |v: Verdict| findings.iter().filter(|f| f.verdict == v).count();
-    format!(
-        "{} claims looked at: {} confirmed, {} partly, {} not confirmed",
-        findings.len(),
-        count(Verdict::Confirmed),
-        count(Verdict::Partly),
-        count(Verdict::NotConfirmed)
-    )
-}
-
-fn markdown(quality: Quality, findings: &[Finding]) -> String {
-    let mut text = format!(
-        "{quality} quality. {}.\n\n| | claim | published in | found here | outcome | seen in | depends on |\n|---|---|---|---|---|---|---|\n",
-        summary(findings)
-    );
-    for (k, f) in findings.iter().enumerate() {
-        // writing to a string cannot fail
-        let _ = writeln!(
-            text,
-            "| {} | {} | {} | {} | **{}** | `{}` | {} |",
-            k + 1,
-            f.claim,
-            f.published,
-            f.found.replace('|', "\\|"),
-            f.verdict.words(),
-            f.figure,
-            f.depends_on
-        );
-    }
-    text
-}
-
-/// The claims for the gallery, readable on a narrow screen.
-pub fn section(findings: &[Finding]) -> String {
-    if findings.is_empty() {
-        return String::new();
-    }
-    let mut html = format!(
-        "<section id=\"claims\"><h2>Claim by claim</h2><p>{}. The numbers are read from the tables beside this page \
-         (<a href=\"reproduction.md\">as a table</a>, <a href=\"reproduction.json\">as JSON</a>).</p><ol class=\"claims\">",
-        summary(findings)
-    );
-    for f in findings {
-        let _ = write!(
-            html,
-            "<li><p><b class=\"{class}\">{verdict}</b> {claim} <span class=\"files\">({published})</span></p>\
-             <p>{found}</p><p class=\"files\">Seen in <a href=\"#{figure}\">{figure}</a>. Depends on: {depends}.</p></li>",
-            class = f.verdict.words().replace(' ', "-"),
-            verdict = f.verdict.words(),
-            claim = escape(f.claim),
-            published = escape(f.published),
-            found = escape(&f.found),
-            figure = f.figure,
-            depends = escape(f.depends_on),
-        );
-    }
-    html.push_str("</ol></section>\n");
-    html
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::synthetic;
-
-    #[test]
-    fn every_claim_is_looked_at_and_written() {
-        let dir = tempfile::tempdir().unwrap();
-        assert!(findings(dir.path()).unwrap().is_empty());
-        synthetic::results(dir.path(), 14, &[-2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0]);
-        let elastic = findings(dir.path()).unwrap();
-        assert!(elastic.len() >= elastic::CLAIMS.len() - 1, "{elastic:?}");
-        synthetic::nematic(dir.path());
-        let all = findings(dir.path()).unwrap();
-        assert!(all.len() >= 20, "{}", all.len());
-        assert!(
-            all.iter()
-                .all(|f| !f.found.contains("NaN") && !f.found.contains("inf"))
-        );
-        write(dir.path(), Quality::Draft, &all).unwrap();
-        let text = std::fs::read_to_string(dir.path().join("reproduction.md")).unwrap();
-        let rows: Vec<&str> = text.lines().filter(|l| l.starts_with('|')).collect();
-        assert_eq!(rows.len(), all.len() + 2);
-        assert!(
-            rows.iter()
-                .all(|r| r.replace("\\|", "").matches('|').count() == 8)
-        );
-        let html = section(&all);
-        assert_eq!(html.matches("<li>").count(), all.len());
-        for f in &all {
-            let names = crate::figures::ALL.iter().map(|f| f.name);
-            let known: Vec<&str> = names
-                .chain(crate::movies::ALL.iter().map(|m| m.name))
-                .collect();
-            assert!(known.contains(&f.figure), "{}", f.figure);
-        }
-    }
-
-    #[test]
-    fn the_page_of_the_documentation_holds_every_claim() {
-        let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/reproduction.md");
-        let text = std::fs::read_to_string(page).unwrap();
-        for claim in elastic::CLAIMS.iter().chain(&nematic::CLAIMS) {
-            assert!(text.contains(claim.text), "the page lacks: {}", claim.text);
-        }
-        for verdict in ["**confirmed**", "**partly**"] {
-            assert!(text.contains(verdict));
-        }
-    }
-
-    #[test]
-    fn verdicts_follow_the_tables() {
-        let dir = tempfile::tempdir().unwrap();
-        synthetic::nematic(dir.path());
-        let all = findings(dir.path()).unwrap();
-        let of = |words: &str| {
-            let f = all.iter().find(|f| f.claim.contains(words));
-            f.unwrap_or_else(|| panic!("{words}")).verdict
-        };
-        // made up: monotonic energy, buckling at 6, times that grow behind it
-        assert_eq!(of("free energy grows"), Verdict::Confirmed);
-        assert_eq!(of("buckles at a critical"), Verdict::Partly);
-        assert_eq!(of("half of the energy"), Verdict::Confirmed);
-    }
+    let numbered = all.zip(1..);
+    Ok(numbered
+        .filter_map(|(claim, number)| claim.finding(number, &tables))
+        .collect())
 }

@@ -30,6 +30,10 @@ pub struct SweepRow {
     pub twist_energy: f64,
     /// Its stretch part.
     pub stretch: f64,
+    /// Elastic energy that the image of an amphichiral knot which was not kept has after charging; empty where only one was
+    /// charged, and in tables written before there was this column.
+    #[serde(default)]
+    pub energy_other_image: Option<f64>,
     /// Writhe after charging.
     pub writhe: f64,
     /// Total twist after charging, in turns.
@@ -190,7 +194,7 @@ mod tests {
         let text = std::fs::read_to_string(&path).unwrap();
         assert_eq!(
             text.lines().next().unwrap(),
-            "case,knot,twist,cut,reading,edges,energy,bend,twist_energy,stretch,writhe,total_twist,t50,t90,t95,t99,t50_after_cut,t90_after_cut,t95_after_cut,t99_after_cut,t_untie,link_drift,min_distance_over_contact,steps,rejected,cpu_seconds,warnings"
+            "case,knot,twist,cut,reading,edges,energy,bend,twist_energy,stretch,energy_other_image,writhe,total_twist,t50,t90,t95,t99,t50_after_cut,t90_after_cut,t95_after_cut,t99_after_cut,t_untie,link_drift,min_distance_over_contact,steps,rejected,cpu_seconds,warnings"
         );
         let path = folder.path().join("table.csv");
         write_table(&path, &[KnotRow::default()]).unwrap();

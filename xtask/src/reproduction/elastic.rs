@@ -1,6 +1,6 @@
 //! Claims about knotted fibres.
 
-use super::{Claim, Said, Tables, Verdict};
+use super::{Claim, Said, Tables, Verdict, flagged};
 use crate::data::{Case, Curve, Cut, Sweep, series};
 use crate::plot::text;
 use topo_analysis::{Spread, crossover, median, quantile, resonances};
@@ -18,107 +18,158 @@ pub const CLAIMS: [Claim; 15] = [
         published: "Fig. 1",
         figure: "elastic-configurations",
         depends: "nothing seen",
+        rule: "all states are there, none changed its knot type, and the linking number moved by less than 1e-6 turns",
         look: charged,
+        other: None,
+        doubt: flags,
     },
     Claim {
         text: "The trefoil, being chiral, buckles differently under right- and left-handed twist.",
         published: "Fig. 2a",
         figure: "elastic-charging",
         depends: BRANCH,
+        rule: "the energies differ by more than 0.5 %",
         look: |t| handed(t, "3_1", true),
+        other: None,
+        doubt: flags,
     },
     Claim {
         text: "The figure-eight knot, being its own mirror image, does not care for the hand of the twist.",
         published: "Fig. 2a",
         figure: "elastic-charging",
         depends: BRANCH,
+        rule: "the energies differ by at most 0.5 %",
         look: |t| handed(t, "4_1", false),
+        other: None,
+        doubt: flags,
     },
     Claim {
         text: "Chiral knots in general buckle by the hand of the twist, and amphichiral ones do not.",
         published: "text to Fig. 2",
         figure: "elastic-charging",
         depends: "amphichiral knots being started from the better of two mirror images",
+        rule: "every chiral knot is above three times the median of the amphichiral ones; in part if the median of the chiral knots is",
         look: chirality,
+        other: None,
+        doubt: flags,
     },
     Claim {
         text: "The energy density along a trefoil differs between θ′h = +2 and −2.",
         published: "Fig. 2b",
         figure: "elastic-charging",
         depends: "nothing seen",
+        rule: "the two ratios differ by more than 5 %",
         look: profiles,
+        other: None,
+        doubt: flags,
     },
     Claim {
         text: "Buckling turns twist into writhe: less twist is left than was supplied.",
         published: "text to Fig. 2",
         figure: "elastic-charging",
         depends: "how L/h is read (sets the twist supplied)",
+        rule: "all twisted states hold less twist; in part if more than half do",
         look: twist_left,
+        other: None,
+        doubt: flags,
     },
     Claim {
         text: "At low twist the stored energy depends on the knot, at high twist it does not.",
         published: "Fig. 3b",
         figure: "elastic-discharge",
         depends: "how L/h is read (sets the energy of an untwisted knot)",
+        rule: "the excess over 1 of the ratio falls to a third",
         look: energies,
+        other: None,
+        doubt: flags,
     },
     Claim {
         text: "Twist takes over from bending at θ′h of about 1.",
         published: "Fig. 3b–e",
         figure: "elastic-discharge",
         depends: "how L/h is read",
+        rule: "the median lies between 0.5 and 1.5",
         look: takeover,
+        other: None,
+        doubt: flags,
     },
     Claim {
         text: "Energy is released in phases, as intermediate knots form and untie (7₄ over others to the unknot).",
         published: "Fig. 3c",
         figure: "elastic-discharge",
         depends: "the cut site",
+        rule: "7₄ passes through another knot and more than half of the knots do; in part if one of the two",
         look: phases,
+        other: None,
+        doubt: flags,
     },
     Claim {
         text: "Without twist 3₁ and 7₄ untie more slowly than others.",
         published: "Fig. 3c",
         figure: "elastic-discharge",
         depends: CUT,
+        rule: "both are more than 1.5 times slower than the median; in part if one is",
         look: slow_pair,
+        other: None,
+        doubt: flags,
     },
     Claim {
         text: "Some knots are superslow for a reason of topology.",
         published: "Fig. 3d, e",
         figure: "elastic-discharge",
         depends: CUT,
+        rule: "a knot is slow under every choice; in part if one is slow under the default only",
         look: robust,
+        other: None,
+        doubt: flags,
     },
     Claim {
         text: "Superslow states lie at low twist.",
         published: "Fig. 3d",
         figure: "elastic-discharge",
         depends: "the cut site",
+        rule: "at least nine in ten of the slow states have |θ′h| ≤ 1; in part if two in three",
         look: slow_at_low_twist,
+        other: None,
+        doubt: flags,
     },
     Claim {
         text: "High twist makes every knot discharge fast.",
         published: "Fig. 3d, e",
         figure: "elastic-discharge",
         depends: "the cut site",
+        rule: "all are faster than the untwisted median; in part if nine in ten are",
         look: fast_at_high_twist,
+        other: None,
+        doubt: flags,
     },
     Claim {
         text: "At high twist the knot no longer matters for the discharge time.",
         published: "Fig. 3e",
         figure: "elastic-discharge",
         depends: "the measure of spread; 7₁ stays slow at high twist",
+        rule: "90th over 10th percentile falls by a fifth and slowest over fastest to below 1.5; in part if one of the two",
         look: knots_washed_out,
+        other: None,
+        doubt: flags,
     },
     Claim {
         text: "The last of the energy goes at a rate set by the relaxed length, the same for all.",
         published: "text to Fig. 3c",
         figure: "elastic-discharge",
         depends: "how long the discharge is followed (here to 99.9 %), how L/h is read",
+        rule: "nine in ten end within 10 %; in part if half do",
         look: final_rates,
+        other: None,
+        doubt: flags,
     },
 ];
+
+/// Warnings of the runs.
+fn flags(t: &Tables) -> Option<String> {
+    let rows = of(t)?.cases.iter().flat_map(|c| &c.cuts);
+    flagged(rows.map(|r| r.warnings.as_str()))
+}
 
 fn of(t: &Tables) -> Option<&Sweep> {
     t.elastic.as_ref()

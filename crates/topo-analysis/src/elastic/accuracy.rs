@@ -113,7 +113,7 @@ pub(crate) fn measured_discharge(
     site: CutSite,
     interrupt: &Interrupt,
 ) -> Result<MeasuredDischarge, AnalysisError> {
-    let charged = charge(job, interrupt)?;
+    let charged = charge(job, interrupt)?.rod;
     let last = charged.record().samples.last();
     let energy = last.map_or(f64::NAN, |s| s.elastic());
     let run = charged

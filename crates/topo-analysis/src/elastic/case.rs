@@ -45,21 +45,30 @@ fn starts_from_two_images(case: &ElasticCase, entry: &KnotEntry) -> bool {
     entry.chirality == Chirality::Amphichiral && case.rod.twist.is_some_and(|twist| twist != 0.0)
 }
 
+/// A charged case.
+#[derive(Debug)]
+pub(crate) struct ChargedCase {
+    pub rod: ChargedRod,
+    /// Elastic energy of the image that was charged too and not kept, in E_0; none if only one was or it did not come to its end.
+    pub energy_other_image: Option<f64>,
+}
+
 /// Twists and relaxes the knot of a case.
 ///
 /// The tight curve of an amphichiral knot need not be its own mirror image, as that of 6_3, and a rod so tightly tied stays
 /// in the one of the two minima that it starts from. The image that stores less under the twist of the case is taken, so
-/// that the energy of such a knot does not depend on the sign of the twist.
+/// that the energy of such a knot does not depend on the sign of the twist. The other image stores what the one kept would
+/// under the opposite twist: how far a single curve sees the sign is the difference of the two energies.
 ///
 /// The mirror image of a knot starts from the mirror image of its start curve, imperfections included, so that at the opposite
 /// twist all of its run is the mirror image of the knot's.
 ///
 /// # Validation
-/// `amphichiral_knots_store_the_same_under_either_twist`, `law_mirrored_knots_give_mirrored_runs`.
+/// `amphichiral_knots_are_charged_from_both_images_and_the_other_is_reported`, `law_mirrored_knots_give_mirrored_runs`.
 pub(crate) fn charge(
     job: &CaseJob<'_>,
     interrupt: &Interrupt,
-) -> Result<ChargedRod, AnalysisError> {
+) -> Result<ChargedCase, AnalysisError> {
     let CaseJob {
         scene,
         case,
@@ -89,7 +98,10 @@ pub(crate) fn charge(
     let from = |battery: &RodBattery| battery.charge(&scene.charge, interrupt).map_err(refuse);
     let charged = from(&battery)?;
     if !starts_from_two_images(case, entry) {
-        return Ok(charged);
+        return Ok(ChargedCase {
+            rod: charged,
+            energy_other_image: None,
+        });
     }
     let image = from(&battery.mirrored().map_err(refuse)?)?;
     let stored = |rod: &ChargedRod| {
@@ -97,10 +109,15 @@ pub(crate) fn charge(
         let energy = last.map_or(f64::INFINITY, |s| s.elastic());
         (!rod.record().report.stop.is_success(), energy)
     };
-    Ok(if stored(&image) < stored(&charged) {
-        image
+    let (rod, other) = if stored(&image) < stored(&charged) {
+        (image, charged)
     } else {
-        charged
+        (charged, image)
+    };
+    let (has_failed, energy) = stored(&other);
+    Ok(ChargedCase {
+        rod,
+        energy_other_image: Some(energy).filter(|_| !has_failed),
     })
 }
 
@@ -138,7 +155,10 @@ pub(crate) fn run(
         source,
     };
     let clock = CpuClock::start();
-    let charged = charge(job, interrupt)?;
+    let ChargedCase {
+        rod: charged,
+        energy_other_image,
+    } = charge(job, interrupt)?;
     let charge_seconds = clock.seconds();
     if interrupt.is_requested() {
         return Ok(None);
@@ -160,6 +180,7 @@ pub(crate) fn run(
         Cuts::All(k) => (0..k).map(|i| i as f64 / k as f64).collect(),
     };
     let mut base = charged_row(case, &charged, table);
+    base.energy_other_image = energy_other_image;
     let mut runs = Vec::new();
     if charged.record().report.stop.is_success() {
         for &at in &sites {
@@ -334,8 +355,10 @@ mod tests {
     use crate::Preset;
     use topo_knots::{TightenSettings, tighten_entry};
 
+    /// The two images of the tight 6_3 are two curves: either one alone stores energies that depend on the sign of the twist, by the
+    /// 2.4e-3 that the finest runs give at 80 edges too. The one that stores less is kept and the other one's energy reported.
     #[test]
-    fn amphichiral_knots_store_the_same_under_either_twist() {
+    fn amphichiral_knots_are_charged_from_both_images_and_the_other_is_reported() {
         let table = KnotTable::builtin();
         let entry = table.get("6_3").unwrap();
         let quick = TightenSettings {
@@ -345,13 +368,14 @@ mod tests {
         };
         let tight = tighten_entry(entry, &quick).unwrap();
         let mut scene = ElasticScene::published(Preset::Draft);
-        scene.rod.n_edges = 80;
-        let energy = |twist: f64| {
+        (scene.rod.n_edges, scene.imperfection) = (80, 0.0);
+        let of = |rod: &ChargedRod| rod.record().samples.last().unwrap().elastic();
+        let run = |twist: Option<f64>| {
             let mut case = ElasticCase {
                 knot: "6_3".to_owned(),
                 rod: scene.rod.clone(),
             };
-            case.rod.twist = Some(twist);
+            case.rod.twist = twist;
             let job = CaseJob {
                 scene: &scene,
                 case: &case,
@@ -359,10 +383,20 @@ mod tests {
                 table: &table,
             };
             let charged = charge(&job, &Interrupt::new()).unwrap();
-            charged.record().samples.last().unwrap().elastic()
+            // the one curve alone
+            let curve = tight.centreline().unwrap();
+            let battery =
+                RodBattery::new(&case.rod, &scene.accuracy, Guards::default(), &curve).unwrap();
+            let single = battery.charge(&scene.charge, &Interrupt::new()).unwrap();
+            (of(&charged.rod), charged.energy_other_image, of(&single))
         };
-        let (plus, minus) = (energy(0.5), energy(-0.5));
-        assert!((plus / minus - 1.0).abs() < 1e-9, "{plus} {minus}");
+        let ((kept, other, plus), (_, other_minus, minus)) = (run(Some(0.5)), run(Some(-0.5)));
+        let difference = (plus / minus - 1.0).abs();
+        println!("6_3 from one image, theta' h = 0.5: sign of the twist felt by {difference:.2e}");
+        assert!((1.5e-3..3.5e-3).contains(&difference), "{difference:.1e}");
+        assert_eq!((kept, other), (plus.min(minus), Some(plus.max(minus))));
+        assert_eq!(other_minus, other);
+        assert_eq!(run(Some(0.0)).1, None);
     }
 
     #[test]

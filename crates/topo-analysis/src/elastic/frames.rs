@@ -51,7 +51,7 @@ pub fn discharge_frames(
         table,
     };
     let area = std::f64::consts::PI;
-    let charged = charge(&job, interrupt)?;
+    let charged = charge(&job, interrupt)?.rod;
     let mut frames = vec![ShapeFrame {
         time: None,
         vertices: charged.state().vertices().to_vec(),

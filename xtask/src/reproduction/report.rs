@@ -1,0 +1,110 @@
+//! The findings as tables and as a section of the gallery.
+
+use super::{Finding, Verdict};
+use crate::data;
+use crate::error::XtaskError;
+use crate::figures::Quality;
+use crate::plot::text::escape;
+use std::fmt::Write as _;
+use std::path::Path;
+
+/// Writes `reproduction.json` and `reproduction.md` into the results folder.
+pub fn write(results: &Path, quality: Quality, findings: &[Finding]) -> Result<(), XtaskError> {
+    let mut json = serde_json::to_string_pretty(&serde_json::json!({
+        "quality": quality,
+        "findings": findings,
+    }))
+    .map_err(|e| XtaskError::Drawing {
+        reason: format!("reproduction: {e}"),
+    })?;
+    json.push('\n');
+    data::write(&results.join("reproduction.json"), json.as_bytes())?;
+    data::write(
+        &results.join("reproduction.md"),
+        markdown(quality, findings).as_bytes(),
+    )
+}
+
+/// How many of each verdict, in words.
+fn summary(findings: &[Finding]) -> String {
+    let count = |v: Verdict| findings.iter().filter(|f| f.verdict == v).count();
+    format!(
+        "{} claims looked at: {} confirmed, {} partly, {} not confirmed",
+        findings.len(),
+        count(Verdict::Confirmed),
+        count(Verdict::Partly),
+        count(Verdict::NotConfirmed)
+    )
+}
+
+/// What was found, in both readings where there are two, and what casts doubt on it.
+fn said(f: &Finding) -> String {
+    let mut text = f.found.clone();
+    if let Some(other) = &f.other_reading {
+        // writing to a string cannot fail
+        let _ = write!(
+            text,
+            ". {}: {} ({})",
+            other.reading,
+            other.found,
+            other.verdict.words()
+        );
+    }
+    if let Some(doubt) = &f.doubt {
+        let _ = write!(text, ". In doubt: {doubt}");
+    }
+    text
+}
+
+fn markdown(quality: Quality, findings: &[Finding]) -> String {
+    let mut text = format!(
+        "{quality} quality. {}.\n\n| | claim | published in | found here | outcome | decided by | seen in | depends on |\n|---|---|---|---|---|---|---|---|\n",
+        summary(findings)
+    );
+    for f in findings {
+        // writing to a string cannot fail
+        let _ = writeln!(
+            text,
+            "| {} | {} | {} | {} | **{}** | {} | `{}` | {} |",
+            f.number,
+            f.claim,
+            f.published,
+            said(f).replace('|', "\\|"),
+            f.verdict.words(),
+            f.rule.replace('|', "\\|"),
+            f.figure,
+            f.depends_on
+        );
+    }
+    text
+}
+
+/// The claims for the gallery, readable on a narrow screen.
+pub fn section(findings: &[Finding]) -> String {
+    if findings.is_empty() {
+        return String::new();
+    }
+    let mut html = format!(
+        "<section id=\"claims\"><h2>Claim by claim</h2><p>{}. The numbers are read from the tables beside this page \
+         (<a href=\"reproduction.md\">as a table</a>, <a href=\"reproduction.json\">as JSON</a>).</p><ol class=\"claims\">",
+        summary(findings)
+    );
+    for f in findings {
+        let _ = write!(
+            html,
+            "<li value=\"{number}\"><p><b class=\"{class}\">{verdict}</b> {claim} <span class=\"files\">({published})</span></p>\
+             <p>{found}</p><p class=\"files\">Decided by: {rule}. Seen in <a href=\"#{figure}\">{figure}</a>. Depends on: {depends}.</p></li>",
+            number = f.number,
+            class = f.verdict.words().replace(' ', "-"),
+            verdict = f.verdict.words(),
+            claim = escape(f.claim),
+            published = escape(f.published),
+            found = escape(&said(f)),
+            rule = escape(f.rule),
+            figure = f.figure,
+            depends = escape(f.depends_on),
+        );
+    }
+    html.push_str("</ol></section>\n");
+    html
+}
