@@ -22,6 +22,8 @@ pub enum Verdict {
     Partly,
     /// Not as claimed.
     NotConfirmed,
+    /// Left open: what the claim compares was not run.
+    NotJudged,
 }
 
 impl Verdict {
@@ -30,6 +32,7 @@ impl Verdict {
             Self::Confirmed => "confirmed",
             Self::Partly => "partly",
             Self::NotConfirmed => "not confirmed",
+            Self::NotJudged => "not judged",
         }
     }
 
@@ -48,6 +51,15 @@ impl Verdict {
             (true, true) => Self::Confirmed,
             (false, false) => Self::NotConfirmed,
             _ => Self::Partly,
+        }
+    }
+
+    /// Confirmed when it holds for all of `n`, in part when for some.
+    fn of_all(n_holding: usize, n: usize) -> Self {
+        match n_holding {
+            0 => Self::NotConfirmed,
+            some if some < n => Self::Partly,
+            _ => Self::Confirmed,
         }
     }
 

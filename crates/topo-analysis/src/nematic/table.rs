@@ -74,7 +74,7 @@ pub struct NematicRow {
 }
 
 /// Order parameter above which a ring counts as buckled.
-const BUCKLED: f64 = 0.01;
+pub(super) const BUCKLED: f64 = 0.01;
 
 impl NematicRow {
     /// Folder of the case, unique within a sweep.

@@ -81,7 +81,7 @@ mod tests {
     fn still(with_particle: bool) -> NematicState {
         let faces = [Faces::Periodic, Faces::Periodic, Faces::Wall];
         let grid = Grid::new([12, 10, 8], 1.0, faces).unwrap();
-        let particle = with_particle.then(|| Particle::central(&grid, 2.5).unwrap());
+        let particle = with_particle.then(|| Particle::central(&grid, 2.0).unwrap());
         NematicState::from_fn(grid, particle, |_| uniaxial(0.5, [0.0, 0.0, 1.0])).unwrap()
     }
 
