@@ -110,7 +110,7 @@ pub fn tables(
         provenance.presets.insert("Elastic runs".to_owned(), runs);
         let start = Instant::now();
         for variant in scene.variants() {
-            sweep(&variant, &table, &settings)?;
+            sweep(&variant.scene, &table, &settings)?;
         }
         provenance
             .wall_seconds

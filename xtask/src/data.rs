@@ -62,19 +62,27 @@ pub struct Sweep {
 }
 
 impl Sweep {
-    /// Reads the sweep and keeps the states of one reading and resolution: those with the
-    /// most rows, so that side studies in the same table do not mix into the figures.
+    /// Reads the sweep of a results folder.
     pub fn read(results: &Path) -> Result<Self, XtaskError> {
-        let path = results.join("elastic/sweep.csv");
-        let cuts: Vec<Cut> = read_csv(&path)?;
+        Self::of_folder(&results.join("elastic"))
+    }
+
+    /// Reads the `sweep.csv` of a folder.
+    pub fn of_folder(folder: &Path) -> Result<Self, XtaskError> {
+        let path = folder.join("sweep.csv");
+        Self::of_rows(read_csv(&path)?).ok_or_else(|| XtaskError::Table {
+            path,
+            reason: "no rows".to_owned(),
+        })
+    }
+
+    /// Gathers rows and keeps the states of one reading and resolution: those with the
+    /// most rows, so that side studies in the same table do not mix into the figures.
+    /// `None` if there are no rows.
+    pub fn of_rows(cuts: Vec<Cut>) -> Option<Self> {
         let key = |c: &Cut| (c.reading.clone(), c.edges);
         let count = |k: &(String, usize)| cuts.iter().filter(|c| key(c) == *k).count();
-        let Some(main) = cuts.iter().map(key).max_by_key(count) else {
-            return Err(XtaskError::Table {
-                path,
-                reason: "no rows".to_owned(),
-            });
-        };
+        let main = cuts.iter().map(key).max_by_key(count)?;
         let mut cases: Vec<Case> = Vec::new();
         for cut in cuts.into_iter().filter(|c| key(c) == main) {
             let same = |c: &&mut Case| {
@@ -92,7 +100,7 @@ impl Sweep {
                 .cmp(&(rank(&b.knot), &b.knot))
                 .then(a.twist.total_cmp(&b.twist))
         });
-        Ok(Self { cases })
+        Some(Self { cases })
     }
 
     /// Names of the knots, in order.

@@ -1,16 +1,18 @@
 //! What the published work claims, and what the tables of a results folder say to each claim.
 
 mod elastic;
+mod friction;
 mod nematic;
 mod report;
 #[cfg(test)]
 mod tests;
 
-use crate::data::{Cut, NematicSweep, Sweep, read_csv};
+use crate::data::{NematicSweep, Sweep};
 use crate::error::XtaskError;
 pub use report::{section, write};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
+use topo_analysis::{ElasticScene, Preset, Purpose, Variant};
 
 /// How far a claim is borne out.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -117,9 +119,41 @@ fn flagged<'a>(warnings: impl IntoIterator<Item = &'a str>) -> Option<String> {
 struct Tables {
     results: PathBuf,
     elastic: Option<Sweep>,
-    /// Untwisted cases under other choices of friction: the name of the choice and its rows.
-    variants: Vec<(&'static str, Vec<Cut>)>,
+    /// Untwisted states under other choices of friction and reading.
+    choices: Vec<Side>,
+    /// Discharges followed until the slowest mode is left.
+    last: Option<Side>,
     nematic: Option<NematicSweep>,
+}
+
+/// A sweep beside the published one.
+struct Side {
+    /// What is chosen differently.
+    name: String,
+    /// Where its cases lie.
+    folder: PathBuf,
+    sweep: Sweep,
+}
+
+impl Side {
+    /// The sweep of a variant; `None` where it was not run.
+    fn read(results: &Path, variant: Variant) -> Result<Option<Self>, XtaskError> {
+        let folder = results.join(&variant.scene.folder);
+        let sweep = there(Sweep::of_folder(&folder))?;
+        Ok(sweep.map(|sweep| Self {
+            name: variant.name,
+            folder,
+            sweep,
+        }))
+    }
+}
+
+/// Tables that were not computed are none, damaged ones an error.
+fn there<T>(table: Result<T, XtaskError>) -> Result<Option<T>, XtaskError> {
+    match table {
+        Err(XtaskError::Missing { .. }) => Ok(None),
+        other => other.map(Some),
+    }
 }
 
 /// A claim with what was found.
@@ -178,31 +212,21 @@ impl Claim {
 
 /// All claims that the tables of a results folder can say something to.
 pub fn findings(results: &Path) -> Result<Vec<Finding>, XtaskError> {
-    let there = |r: Result<_, XtaskError>| match r {
-        Err(XtaskError::Missing { .. }) => Ok(None),
-        other => other.map(Some),
-    };
-    let mut variants = Vec::new();
-    for (name, folder) in [
-        (
-            "friction range of the contact diameter",
-            "elastic-contact-range",
-        ),
-        ("reading “tight”", "elastic-tight"),
-    ] {
-        if let Ok(rows) = read_csv::<Cut>(&results.join(folder).join("sweep.csv")) {
-            variants.push((name, rows));
-        }
-    }
-    let tables = Tables {
+    let mut tables = Tables {
         results: results.to_owned(),
         elastic: there(Sweep::read(results))?,
-        variants,
-        nematic: match NematicSweep::read(results) {
-            Err(XtaskError::Missing { .. }) => None,
-            other => Some(other?),
-        },
+        choices: Vec::new(),
+        last: None,
+        nematic: there(NematicSweep::read(results))?,
     };
+    // what the finest preset runs, the others run in part
+    for variant in ElasticScene::published(Preset::Paper).variants() {
+        match variant.purpose {
+            Purpose::Choice => tables.choices.extend(Side::read(results, variant)?),
+            Purpose::End => tables.last = Side::read(results, variant)?,
+            Purpose::Friction => {}
+        }
+    }
     let all = elastic::CLAIMS.iter().chain(&nematic::CLAIMS);
     let numbered = all.zip(1..);
     Ok(numbered

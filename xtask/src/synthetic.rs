@@ -42,11 +42,10 @@ pub fn results(folder: &Path, n_knots: usize, twists: &[f64]) {
         }
         assert_eq!(curve.len(), N);
     }
-    write(
-        &folder.join("elastic/sweep.csv"),
-        &sweep.into_inner().unwrap(),
-    )
-    .unwrap();
+    let sweep = sweep.into_inner().unwrap();
+    write(&folder.join("elastic/sweep.csv"), &sweep).unwrap();
+    // another choice of friction, as if it changed nothing
+    write(&folder.join("elastic-contact-range/sweep.csv"), &sweep).unwrap();
     write(
         &folder.join("knots/table.csv"),
         &table.into_inner().unwrap(),
@@ -107,6 +106,7 @@ fn cut(knot: &str, k: usize, twist: f64, c: usize) -> Cut {
         bend,
         twist_energy,
         stretch: 0.001,
+        energy_other_image: None,
         writhe: 3.4 + 0.8 * twist,
         total_twist: 8.0 * twist,
         t50: Some(t99 / 12.0),

@@ -10,6 +10,7 @@ mod record;
 mod resonance;
 mod scene;
 mod sweep;
+mod variants;
 
 pub use accuracy::{ACCURACY_CASES, AccuracyRow, measure_accuracy, reference_scene};
 pub(crate) use accuracy::{MeasuredDischarge, exact_discharge, measured_discharge};
@@ -21,3 +22,4 @@ pub use imperfection::perturbed;
 pub use resonance::{Ensemble, Regime, Resonance, crossover, ensembles, regime, resonances};
 pub use scene::{ElasticCase, ElasticScene};
 pub use sweep::{SweepReport, estimate_sweep, run_sweep};
+pub use variants::{Purpose, Variant};

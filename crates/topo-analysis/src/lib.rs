@@ -28,9 +28,9 @@ mod wish;
 pub use cost::Estimate;
 pub use elastic::{
     ACCURACY_CASES, AccuracyRow, Cuts, ElasticCase, ElasticScene, Ensemble, NEAR_TIE, Names,
-    Numbers, Preset, RESULTS_VERSION, Regime, Resonance, ShapeFrame, SweepReport, crossover,
-    discharge_frames, ensembles, estimate_sweep, measure_accuracy, perturbed, reference_scene,
-    regime, resonances, run_sweep,
+    Numbers, Preset, Purpose, RESULTS_VERSION, Regime, Resonance, ShapeFrame, SweepReport, Variant,
+    crossover, discharge_frames, ensembles, estimate_sweep, measure_accuracy, perturbed,
+    reference_scene, regime, resonances, run_sweep,
 };
 pub use error::AnalysisError;
 pub use folder::writable;
@@ -44,7 +44,7 @@ pub use nematic::{
 pub use progress::{Event, Shard, SweepSettings, with_jobs};
 pub use scene::Scene;
 pub use stability::{StabilityRow, n_extremes, stability};
-pub use statistics::{Spread, median, quantile};
+pub use statistics::{Spread, median, quantile, standard_deviation};
 pub use system::{Effort, System};
 pub use table::{KnotRow, SweepRow, parse_table, read_table, table_bytes, write_table};
 pub use terms::{TermCost, term_costs};

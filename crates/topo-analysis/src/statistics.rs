@@ -50,6 +50,15 @@ pub fn median(values: impl IntoIterator<Item = f64>) -> Option<f64> {
     quantile(values, 0.5)
 }
 
+/// Standard deviation of a sample, sqrt(Σ (x − mean)²/(n − 1)), of the finite numbers given; `None` of fewer than two.
+pub fn standard_deviation(values: impl IntoIterator<Item = f64>) -> Option<f64> {
+    let values: Vec<f64> = values.into_iter().filter(|v| v.is_finite()).collect();
+    let n = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    let squares: f64 = values.iter().map(|v| (v - mean).powi(2)).sum();
+    (values.len() > 1).then(|| (squares / (n - 1.0)).sqrt())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -62,5 +71,9 @@ mod tests {
         assert_eq!(median([4.0, 1.0, 2.0, 3.0]), Some(2.5));
         assert_eq!(quantile([1.0, 2.0, 3.0, 4.0, 5.0], 0.9), Some(4.6));
         assert_eq!(median([f64::NAN]), None);
+        // mean 5, squares 9 + 1 + 1 + 1 + 0 + 0 + 4 + 16
+        let sd = standard_deviation([2.0, 4.0, 4.0, 4.0, 5.0, 5.0, 7.0, 9.0]).unwrap();
+        assert!((sd - (32.0_f64 / 7.0).sqrt()).abs() < 1e-15);
+        assert_eq!(standard_deviation([1.0, f64::NAN]), None);
     }
 }

@@ -32,7 +32,7 @@ pub fn of_order(
         stages.insert("elastic", estimate_sweep(&scene, &table, settings)?);
         let mut variants = Estimate::default();
         for variant in scene.variants() {
-            variants = variants.then(estimate_sweep(&variant, &table, settings)?);
+            variants = variants.then(estimate_sweep(&variant.scene, &table, settings)?);
         }
         stages.insert("variants", variants);
     }

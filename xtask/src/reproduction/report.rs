@@ -1,14 +1,15 @@
 //! The findings as tables and as a section of the gallery.
 
-use super::{Finding, Verdict};
+use super::{Finding, Verdict, friction};
 use crate::data;
 use crate::error::XtaskError;
 use crate::figures::Quality;
 use crate::plot::text::escape;
 use std::fmt::Write as _;
 use std::path::Path;
+use topo_analysis::write_table;
 
-/// Writes `reproduction.json` and `reproduction.md` into the results folder.
+/// Writes `reproduction.json` and `reproduction.md` into the results folder, and `friction-study.csv` where that study was run.
 pub fn write(results: &Path, quality: Quality, findings: &[Finding]) -> Result<(), XtaskError> {
     let mut json = serde_json::to_string_pretty(&serde_json::json!({
         "quality": quality,
@@ -19,10 +20,12 @@ pub fn write(results: &Path, quality: Quality, findings: &[Finding]) -> Result<(
     })?;
     json.push('\n');
     data::write(&results.join("reproduction.json"), json.as_bytes())?;
-    data::write(
-        &results.join("reproduction.md"),
-        markdown(quality, findings).as_bytes(),
-    )
+    let study = friction::study(results)?;
+    if !study.is_empty() {
+        write_table(&results.join("friction-study.csv"), &study)?;
+    }
+    let text = markdown(quality, findings) + &friction::markdown(&study);
+    data::write(&results.join("reproduction.md"), text.as_bytes())
 }
 
 /// How many of each verdict, in words.

@@ -5,9 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 use topo_knots::TightenSettings;
-use topo_rod::{
-    Accuracy, ChargeSettings, DischargeSettings, FrictionRange, Reading, RodParameters,
-};
+use topo_rod::{Accuracy, ChargeSettings, DischargeSettings, RodParameters};
 
 use super::choices::{Cuts, Numbers, Preset};
 use super::file::defaults;
@@ -200,36 +198,6 @@ impl ElasticScene {
     pub fn results(&self, out: &Path) -> PathBuf {
         out.join(&self.folder)
     }
-
-    /// The untwisted cases under other choices, their tables in folders of their own: the two that separate knot type from
-    /// friction (friction range equal to the contact diameter, and the reading `tight`), and at the paper preset the readings
-    /// `hard` and `own-length` as well, so that all four are there.
-    pub fn variants(&self) -> Vec<Self> {
-        let untwisted = Self {
-            twists: vec![0.0],
-            ..self.clone()
-        };
-        let mut contact = Self {
-            folder: "elastic-contact-range".to_owned(),
-            ..untwisted.clone()
-        };
-        if let Some(friction) = &mut contact.rod.friction {
-            friction.range = FrictionRange::Contact;
-        }
-        let read_as = |reading: Reading| {
-            let mut scene = Self {
-                folder: format!("elastic-{}", reading.name()),
-                ..untwisted.clone()
-            };
-            scene.rod.reading = reading;
-            scene
-        };
-        let mut variants = vec![contact, read_as(Reading::Tight)];
-        if matches!(self.preset, Preset::Paper | Preset::Reference) {
-            variants.extend([Reading::Hard, Reading::OwnLength].map(read_as));
-        }
-        variants
-    }
 }
 
 #[cfg(test)]
@@ -243,21 +211,5 @@ mod tests {
             .unwrap();
         assert_eq!(cases.len(), 238);
         assert_eq!(cases[8].name(), "3_1_twist+0.00_shrunk_n200");
-    }
-
-    #[test]
-    fn all_four_readings_are_run_at_the_paper_preset() {
-        let folders = |preset| {
-            let variants = ElasticScene::published(preset).variants();
-            assert!(variants.iter().all(|v| v.twists == [0.0]));
-            variants.into_iter().map(|v| v.folder).collect::<Vec<_>>()
-        };
-        let two = ["elastic-contact-range", "elastic-tight"];
-        assert_eq!(folders(Preset::Standard), two);
-        assert_eq!(folders(Preset::Paper)[..2], two);
-        assert_eq!(
-            folders(Preset::Paper)[2..],
-            ["elastic-hard", "elastic-own-length"]
-        );
     }
 }

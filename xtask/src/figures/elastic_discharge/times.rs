@@ -158,7 +158,7 @@ pub fn robust(results: &Path) -> String {
         }
     };
     format!(
-        " Untwisted knots slower than {SLOW} times the median (ratio): {}; of these also with friction range = contact \
+        " Untwisted knots slower than {SLOW} times the median, by the mean over the cuts of the table (ratio): {}; of these also with friction range = contact \
          diameter and in the reading tight: {}.",
         list(false),
         list(true)
