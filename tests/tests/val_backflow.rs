@@ -248,3 +248,55 @@ fn law_rates_with_flow_converge_in_space() {
         "{coarse} {middle} {fine}"
     );
 }
+
+#[test]
+fn val_flow_of_two_waves_turns_as_their_rates_say() {
+    // Tilts of two waves, k and 2 k, by the same small angle: the velocity of a tilt goes as k, its rate as k². The one wave drives
+    // half of the speed of the other and outlives it, so that the flow goes from both to the longer wave alone.
+    let m = Material::default();
+    let battery = NematicBattery::new(
+        &Mode::Bend.parameters(2 * N),
+        &NematicAccuracy {
+            tolerance: 1e-6,
+            ..Default::default()
+        },
+    )
+    .unwrap();
+    let k = Mode::Bend.wave_number();
+    let state = NematicState::from_fn(*battery.grid(), None, |[x, _, _]| {
+        let tilt = 0.01 * ((k * x).cos() + (2.0 * k * x).cos());
+        uniaxial(m.order(), [tilt.cos(), 0.0, tilt.sin()])
+    })
+    .unwrap();
+    let keep = SwitchSettings {
+        to: SwitchTarget::Keep,
+        ramp: None,
+    };
+    let settings = DischargeSettings {
+        until_released: 0.999,
+        longest: 1e6,
+        flow: Some(FlowParameters::default()),
+        ..Default::default()
+    };
+    let switched = battery.adopt(&state).unwrap().switch(&keep).unwrap();
+    let run = switched
+        .discharge(&settings, &mut RunHooks::new(&Interrupt::new()))
+        .unwrap();
+    let rate = Mode::Bend.exact(&m, true) * k * k;
+    let (mut worst, mut least): (f64, f64) = (0.0, 1.0);
+    for sample in &run.record.samples {
+        let (a, b) = (
+            (-rate * sample.time).exp(),
+            2.0 * (-4.0 * rate * sample.time).exp(),
+        );
+        let exact = (a + 2.0 * b) / (5.0 * (a * a + b * b)).sqrt();
+        let found = sample.flow_correlation.unwrap();
+        worst = worst.max((found - exact).abs());
+        least = least.min(found);
+    }
+    let n = run.record.samples.len();
+    println!("{n} samples: worst {worst:.1e}, least correlation {least:.4}");
+    assert!(n > 20 && run.record.samples[0].flow_correlation.unwrap() > 1.0 - 1e-9);
+    // at the end the longer wave is all that is left: 1/sqrt(5)
+    assert!(worst < 0.01 && (least - 0.2_f64.sqrt()).abs() < 0.01);
+}

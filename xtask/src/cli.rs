@@ -50,6 +50,12 @@ pub enum Command {
   cargo xtask stability --only nematic        those of one system
   cargo xtask stability --quality standard    every run to its very end")]
     Stability(SystemsArgs),
+    /// Charge colloids near the critical charge under other spacings, seeds, tolerances and boundary schemes: what decides where rings buckle.
+    #[command(after_help = "Examples:
+  cargo xtask buckling                          R = 15 and 25: half an hour on one processor
+  cargo xtask buckling --radius 52.5 --jobs 1   the published size: an hour, 2 GB
+  cargo xtask buckling --record                 puts the tables into docs/nematic-model.md")]
+    Buckling(BucklingArgs),
     /// Measure what accuracy costs: the same cases under many settings, against converged references.
     #[command(after_help = "Examples:
   cargo xtask tradeoff                        draft: minutes
@@ -239,6 +245,19 @@ pub struct SystemsArgs {
     /// How much is run: draft or standard.
     #[arg(long, value_enum, default_value_t = Quality::Draft, hide_possible_values = true)]
     pub quality: Quality,
+    #[command(flatten)]
+    pub work: WorkArgs,
+}
+
+/// Options of `buckling`.
+#[derive(Debug, Args)]
+pub struct BucklingArgs {
+    /// Radius of the particle, in xi_N: 15, 25 or 52.5; may be given several times.
+    #[arg(long, value_name = "R", default_values_t = [15.0, 25.0])]
+    pub radius: Vec<f64>,
+    /// Put the tables into docs/nematic-model.md.
+    #[arg(long)]
+    pub record: bool,
     #[command(flatten)]
     pub work: WorkArgs,
 }

@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod bench;
+mod buckling;
 mod cargo;
 mod ci;
 mod compare;
@@ -31,6 +32,7 @@ pub fn dispatch(cli: Cli) -> Result<(), XtaskError> {
         Command::Run(args) => run::run(&args),
         Command::Accuracy(args) => accuracy::run(&args),
         Command::Stability(args) => stability::run(&args),
+        Command::Buckling(args) => buckling::run(&args),
         Command::Tradeoff(args) => tradeoff::run(&args),
         Command::Compare(args) => compare::run(&args),
         Command::Cost(args) => cost::run(&args),

@@ -24,6 +24,8 @@ pub enum Verdict {
     Partly,
     /// Not as claimed.
     NotConfirmed,
+    /// Left open: what the claim compares was not run.
+    NotJudged,
 }
 
 impl Verdict {
@@ -32,6 +34,7 @@ impl Verdict {
             Self::Confirmed => "confirmed",
             Self::Partly => "partly",
             Self::NotConfirmed => "not confirmed",
+            Self::NotJudged => "not judged",
         }
     }
 
@@ -50,6 +53,15 @@ impl Verdict {
             (true, true) => Self::Confirmed,
             (false, false) => Self::NotConfirmed,
             _ => Self::Partly,
+        }
+    }
+
+    /// Confirmed when it holds for all of `n`, in part when for some.
+    fn of_all(n_holding: usize, n: usize) -> Self {
+        match n_holding {
+            0 => Self::NotConfirmed,
+            some if some < n => Self::Partly,
+            _ => Self::Confirmed,
         }
     }
 

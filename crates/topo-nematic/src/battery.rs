@@ -5,6 +5,7 @@ mod charging;
 mod coupled_flow;
 pub(crate) mod discharge;
 pub(crate) mod final_state;
+mod flow_direction;
 pub(crate) mod hooks;
 pub(crate) mod minimum;
 mod ramp;

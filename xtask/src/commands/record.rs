@@ -42,7 +42,7 @@ mod tests {
 
     #[test]
     fn the_pages_have_a_place() {
-        for page in ["cost.md", "fuzzing.md"] {
+        for page in ["cost.md", "fuzzing.md", "nematic-model.md"] {
             let text = std::fs::read_to_string(workspace().join("docs").join(page)).unwrap();
             assert!(replaced(&text, "").is_some(), "{page}");
         }

@@ -47,7 +47,7 @@ pub const CLAIMS: [Claim; 15] = [
         published: "Fig. 2a",
         figure: "elastic-charging",
         depends: BRANCH,
-        rule: "from one image of the start shape alone the energies of the two hands differ by at most 0.5 % at every twist; in part if at the largest, or if the energy of the other image is not in the table",
+        rule: "from one image of the start shape alone the energies of the two hands differ by at most 0.5 % at every twist; in part if at the largest; not judged where the energy of the other image is not in the table",
         look: charging::figure_eight,
         other: None,
         doubt: flags,
@@ -57,7 +57,7 @@ pub const CLAIMS: [Claim; 15] = [
         published: "text to Fig. 2",
         figure: "elastic-charging",
         depends: "amphichiral knots being started from the better of two mirror images",
-        rule: "by the median over twists, every chiral knot sees the hand more than three times as much as the amphichiral ones from one image alone; in part if the median of the chiral knots does, or if the energy of the other image is not in the table",
+        rule: "by the median over twists, every chiral knot sees the hand more than three times as much as the amphichiral ones from one image alone; in part if the median of the chiral knots does; not judged where the energy of the other image is not in the table",
         look: charging::chirality_by_median,
         other: Some(Other {
             reading: "By the largest over twists",

@@ -31,13 +31,19 @@ pub fn write(results: &Path, quality: Quality, findings: &[Finding]) -> Result<(
 /// How many of each verdict, in words.
 fn summary(findings: &[Finding]) -> String {
     let count = |v: Verdict| findings.iter().filter(|f| f.verdict == v).count();
-    format!(
+    let mut text = format!(
         "{} claims looked at: {} confirmed, {} partly, {} not confirmed",
         findings.len(),
         count(Verdict::Confirmed),
         count(Verdict::Partly),
         count(Verdict::NotConfirmed)
-    )
+    );
+    let open = count(Verdict::NotJudged);
+    if open > 0 {
+        // writing to a string cannot fail
+        let _ = write!(text, ", {open} not judged");
+    }
+    text
 }
 
 /// What was found, in both readings where there are two, and what casts doubt on it.

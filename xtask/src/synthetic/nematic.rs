@@ -121,6 +121,7 @@ fn series(row: &NematicRow) -> Vec<NematicSample> {
                 time,
                 energy: row.f_after_switch * (-time * f64::from(row.q) / 20.0).exp(),
                 order_x: row.order_parameter,
+                flow_correlation: (row.flow == "on").then(|| (time / 9.0).cos()),
                 ..Default::default()
             }
         })

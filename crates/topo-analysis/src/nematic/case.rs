@@ -415,6 +415,7 @@ fn sample(s: &topo_nematic::NematicSample) -> NematicSample {
         ring_radius: s.ring.as_ref().map(|r| r.radius),
         max_speed: s.max_speed,
         power: None,
+        flow_correlation: s.flow_correlation,
     }
 }
 

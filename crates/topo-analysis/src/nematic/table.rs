@@ -74,7 +74,7 @@ pub struct NematicRow {
 }
 
 /// Order parameter above which a ring counts as buckled.
-const BUCKLED: f64 = 0.01;
+pub(super) const BUCKLED: f64 = 0.01;
 
 impl NematicRow {
     /// Folder of the case, unique within a sweep.
@@ -119,6 +119,10 @@ pub struct NematicSample {
     pub max_speed: Option<f64>,
     /// Power of the nematic's force on the fluid, with flow.
     pub power: Option<f64>,
+    /// Correlation of the velocity in three dimensions with the first one, over the cells of the fluid: 1 along it, −1 against it; empty
+    /// without flow, and in tables older than the column.
+    #[serde(default)]
+    pub flow_correlation: Option<f64>,
 }
 
 /// A point of a defect line, relative to the particle's centre.

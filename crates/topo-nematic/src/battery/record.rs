@@ -56,6 +56,9 @@ pub struct NematicSample {
     pub ring: Option<Ring>,
     /// Largest speed, in xi_N/tau_N; none without flow.
     pub max_speed: Option<f64>,
+    /// Correlation of the velocity with the first one looked at, <u(t).u(t_1)>/(|u(t)||u(t_1)|) over the fluid: below zero the flow has
+    /// changed its direction; none without flow.
+    pub flow_correlation: Option<f64>,
 }
 
 /// What the flow of a discharge took.

@@ -105,34 +105,24 @@ fn snapshots(sweep: &NematicSweep, canvas: &mut Canvas) -> Result<String, XtaskE
     }
     let label = format!("*q* = {}", row.q);
     canvas.text(24.0, 18.0, &label, Style::default().bold().size(10.5));
-    Ok(reversal(row, &after))
+    reversal(sweep, row)
 }
 
-/// How often the vertical velocity above the particle changes its sign, and in how many snapshots with flow.
-pub fn sign_changes(row: &NematicRow, slices: &[&Slice]) -> (usize, usize) {
-    let lift = |s: &Slice| -> Option<f64> {
-        let above = s
-            .points
-            .iter()
-            .filter(|p| p.z > row.radius && p.x.abs() < row.radius);
-        let speeds: Vec<f64> = above.filter_map(|p| p.uz).collect();
-        (!speeds.is_empty()).then(|| speeds.iter().sum())
+/// Whether the flow changes its direction, in words; nothing without flow.
+fn reversal(sweep: &NematicSweep, row: &NematicRow) -> Result<String, XtaskError> {
+    let series = sweep.series(row)?;
+    let found = series
+        .iter()
+        .filter_map(|p| Some((p.time, p.flow_correlation?)));
+    let Some((time, least)) = found.min_by(|a, b| a.1.total_cmp(&b.1)) else {
+        return Ok(String::new());
     };
-    let signs: Vec<f64> = slices.iter().filter_map(|s| lift(s)).collect();
-    let swaps = signs.windows(2).filter(|w| w[0] * w[1] < 0.0).count();
-    (swaps, signs.len())
-}
-
-/// Whether the flow reverses, in words.
-fn reversal(row: &NematicRow, slices: &[&Slice]) -> String {
-    match sign_changes(row, slices) {
-        (_, 0) => String::new(),
-        (swaps, n) => format!(
-            " With flow (q = {}) the vertical velocity above the particle changes its sign {} in {n} snapshots.",
-            row.q,
-            text::times(swaps)
-        ),
-    }
+    Ok(format!(
+        " With flow (q = {}) the correlation of the velocity with the first falls to {} at t = {} R²/ΓL.",
+        row.q,
+        text::number(least, 2),
+        text::significant(time / row.radius.powi(2), 2)
+    ))
 }
 
 fn curves(sweep: &NematicSweep, canvas: &mut Canvas, table: &mut Table) -> Result<(), XtaskError> {

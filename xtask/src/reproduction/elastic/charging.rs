@@ -98,7 +98,7 @@ pub fn figure_eight(t: &Tables) -> Said {
     let twists = positive(s).into_iter();
     let single = twists.filter_map(|twist| of_one_image(s, "4_1", twist));
     let (Some(at_top), Some(all)) = (of_one_image(s, "4_1", top(s)?), Spread::of(single)) else {
-        return Some((format!("{told}; {NO_OTHER_IMAGE}"), Verdict::Partly));
+        return Some((format!("{told}; {NO_OTHER_IMAGE}"), Verdict::NotJudged));
     };
     Some((
         format!(
@@ -136,7 +136,7 @@ fn chirality(t: &Tables, name: &str, over: fn(Vec<f64>) -> Option<f64>) -> Said 
     );
     let Some(m) = median(mirror) else {
         let told = format!("{chiral_said}; of amphichiral knots {NO_OTHER_IMAGE}");
-        return Some((told, Verdict::both(c > SEEN, false)));
+        return Some((told, Verdict::NotJudged));
     };
     let below = chiral.iter().filter(|k| k.1 <= 3.0 * m);
     let below: Vec<String> = below

@@ -8,7 +8,7 @@ mod series;
 
 use super::CLAIMS;
 use crate::data::{Cut, KNOTS, Sweep};
-use crate::reproduction::Verdict::{Confirmed, NotConfirmed, Partly};
+use crate::reproduction::Verdict::{Confirmed, NotConfirmed, NotJudged, Partly};
 use crate::reproduction::{Finding, Side, Tables, Verdict};
 use std::path::Path;
 

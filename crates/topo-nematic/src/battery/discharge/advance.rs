@@ -16,7 +16,7 @@ use crate::real::Real;
 use crate::stabilised::{Drift, Stabilised};
 use crate::{Drive, EnergyParts, NematicError, NematicState, Precision, order_parameter, ring};
 
-const SCHEMA: &str = "nematic-discharge/4";
+const SCHEMA: &str = "nematic-discharge/5";
 /// First step, in h²/(Gamma L).
 const FIRST_STEP: f64 = 1e-3;
 /// Largest rise of the energy in a step, relative to what is left above the final state.
@@ -263,6 +263,7 @@ impl<'a, T: Real> Advance<'a, T> {
         }
         self.kernel.gather(&self.field.q, self.state.q_mut());
         let order = self.switched.charged.battery.parameters().material.order();
+        let flow_correlation = self.flow.as_mut().and_then(|f| f.direction(&self.state));
         let flow = self.flow.as_ref().map(|f| &f.coupling);
         let sample = NematicSample {
             time: run.time,
@@ -271,6 +272,7 @@ impl<'a, T: Real> Advance<'a, T> {
             order: order_parameter(&self.state, order),
             ring: ring(&self.state, self.settings.ring_threshold),
             max_speed: flow.map(|f| f.max_speed()),
+            flow_correlation,
         };
         if hooks.wants_samples() {
             hooks.show(&sample, &self.state, flow);
@@ -408,7 +410,7 @@ impl<'a, T: Real> Advance<'a, T> {
                 fields: self.field.n_bytes(),
                 geometry: self.kernel.n_bytes(),
                 second: self.kernel.n_second_bytes(),
-                flow: flow.map_or(0, |f| f.coupling.n_bytes() as u64),
+                flow: flow.map_or(0, |f| f.n_bytes() as u64),
             },
             cpu_seconds: self.earlier_cpu_seconds + self.clock.seconds(),
             n_second_passes: self.kernel.n_second_passes(),
