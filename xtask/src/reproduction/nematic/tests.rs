@@ -42,20 +42,25 @@ fn row(q: u32) -> NematicRow {
     }
 }
 
+/// Tables of these runs, with files of the cases in a folder.
+fn tables(folder: &Path, rows: Vec<NematicRow>, flowing: Vec<NematicRow>) -> Tables {
+    Tables {
+        results: folder.to_owned(),
+        elastic: None,
+        choices: Vec::new(),
+        last: None,
+        nematic: Some(NematicSweep {
+            folder: folder.to_owned(),
+            rows,
+            flowing,
+        }),
+    }
+}
+
 /// What claim `n` says to rows, with files of the cases in a folder.
 fn said(n: usize, rows: &[NematicRow], folder: &Path) -> (String, Verdict) {
     let (flowing, still) = rows.iter().cloned().partition(|r| r.flow == "on");
-    let tables = Tables {
-        results: folder.to_owned(),
-        elastic: None,
-        variants: Vec::new(),
-        nematic: Some(NematicSweep {
-            folder: folder.to_owned(),
-            rows: still,
-            flowing,
-        }),
-    };
-    (CLAIMS[n - 16].look)(&tables).unwrap()
+    (CLAIMS[n - 16].look)(&tables(folder, still, flowing)).unwrap()
 }
 
 /// The verdict on claim `n` of the states q = 1 to 10 after a change; no files.

@@ -1,8 +1,6 @@
 //! Verdicts on discharges.
 
-use super::{CLAIMS, MODE, RADIUS, as_it_is, only_buckled, only_flat, row, said, verdict};
-use crate::data::NematicSweep;
-use crate::reproduction::Tables;
+use super::{CLAIMS, MODE, RADIUS, as_it_is, only_buckled, only_flat, row, said, tables, verdict};
 use crate::reproduction::Verdict::{Confirmed, NotConfirmed, NotJudged, Partly};
 use std::path::Path;
 use topo_analysis::{NematicRow, NematicSample, write_table};
@@ -138,16 +136,7 @@ fn with_flow_the_slow_mode_is_faster_by_the_closed_form() {
         r.late_rate = r.late_rate.map(|l| 1.105_707 * l);
     }
     // a sweep that has runs with flow only is judged by these
-    let tables = Tables {
-        results: "no files".into(),
-        elastic: None,
-        variants: Vec::new(),
-        nematic: Some(NematicSweep {
-            folder: "no files".into(),
-            rows: rows.clone(),
-            flowing: rows,
-        }),
-    };
+    let tables = tables(Path::new("no files"), rows.clone(), rows);
     let (found, verdict) = (CLAIMS[28 - 16].look)(&tables).unwrap();
     assert_eq!(verdict, Confirmed);
     assert!(found.contains("at 1.04 times"), "{found}");
