@@ -9,3 +9,8 @@
 pub mod curves;
 pub mod parsers;
 pub mod run;
+
+/// The programs of the page are compiled and run as documentation tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../README.md")]
+pub struct Readme;

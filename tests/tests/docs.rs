@@ -180,3 +180,32 @@ fn docs_cite_only_known_works() {
         }
     }
 }
+
+/// Every page with a program in Rust is among the documentation tests of this crate.
+#[test]
+fn docs_with_rust_are_compiled() {
+    let mut pages = vec![root().join("README.md"), root().join("CONTRIBUTING.md")];
+    pages.extend(
+        fs::read_dir(root().join("docs"))
+            .unwrap()
+            .map(|e| e.unwrap().path()),
+    );
+    let compiled = fs::read_to_string(root().join("tests/src/lib.rs")).unwrap();
+    let mut n = 0;
+    for page in pages
+        .iter()
+        .filter(|p| p.extension().is_some_and(|e| e == "md"))
+    {
+        let text = fs::read_to_string(page).unwrap();
+        if text.lines().any(|l| l.starts_with("```rust")) {
+            let path = page.strip_prefix(root()).unwrap().display().to_string();
+            let included = format!("include_str!(\"../../{path}\")");
+            assert!(
+                compiled.contains(&included),
+                "tests/src/lib.rs lacks {included}"
+            );
+            n += 1;
+        }
+    }
+    assert!(n > 0, "README.md has no program any more");
+}

@@ -10,6 +10,7 @@ mod figures;
 mod gallery;
 mod interrupt;
 mod movies;
+mod outside;
 mod plot;
 mod progress;
 mod provenance;

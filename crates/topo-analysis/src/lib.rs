@@ -36,10 +36,10 @@ pub use error::AnalysisError;
 pub use folder::writable;
 pub use knots::{Shapes, knots_folder, tight_shapes, write_knots};
 pub use nematic::{
-    BucklingCase, BucklingRow, FieldSnapshot, LinePoint, NEMATIC_SHARES, NematicCase, NematicFrame,
-    NematicReport, NematicResonance, NematicRow, NematicSample, NematicScene, SlicePoint, buckling,
-    buckling_cases, buckling_study, estimate_nematic_sweep, nematic_frames, nematic_resonance,
-    resonance_peak, run_nematic_sweep,
+    BucklingCase, BucklingRow, FieldSnapshot, LinePoint, NEMATIC_RESULTS_VERSION, NEMATIC_SHARES,
+    NematicCase, NematicFrame, NematicReport, NematicResonance, NematicRow, NematicSample,
+    NematicScene, SlicePoint, buckling, buckling_cases, buckling_study, estimate_nematic_sweep,
+    nematic_frames, nematic_resonance, resonance_peak, run_nematic_sweep,
 };
 pub use progress::{Event, Shard, SweepSettings, with_jobs};
 pub use scene::Scene;

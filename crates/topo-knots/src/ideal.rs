@@ -7,7 +7,7 @@ use topo_core::{load_checkpoint, save_checkpoint};
 use crate::{KnotEntry, KnotError, TightKnot, TightenSettings, tighten_entry};
 
 /// Changes whenever the tightening gives other results, so that older files are not used.
-const METHOD_VERSION: u32 = 1;
+pub const METHOD_VERSION: u32 = 1;
 /// Name and version of the type in the files.
 const SCHEMA: &str = "tight-knot/1";
 

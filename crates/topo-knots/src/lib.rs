@@ -24,7 +24,7 @@ pub use curve_file::{
     write_curve,
 };
 pub use error::KnotError;
-pub use ideal::{ideal, is_kept};
+pub use ideal::{METHOD_VERSION, ideal, is_kept};
 pub use identify::{Handedness, KnotType, OpenKnotType, identify, identify_open};
 pub use invariant::{
     Invariants, Jones, alexander_polynomial, determinant, jones_polynomial, signature,

@@ -37,8 +37,8 @@ pub fn run() -> Result<(), XtaskError> {
     for (name, command) in packages::checks(&target())? {
         check(&name, command)?;
     }
-    let (counts, ok) = test::all(false)?;
-    if !ok {
+    let report = test::all(false)?;
+    if !report.ok {
         failed.push("tests".to_owned());
     }
     let verdict = if failed.is_empty() {
@@ -47,7 +47,7 @@ pub fn run() -> Result<(), XtaskError> {
         format!("failed: {}", failed.join(", "))
     };
     println!("ci: {verdict}");
-    println!("{counts}");
+    println!("{report}");
     if failed.is_empty() {
         Ok(())
     } else {

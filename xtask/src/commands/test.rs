@@ -3,6 +3,7 @@
 use super::cargo::{CHECKED, cargo, step};
 use crate::cli::TestArgs;
 use crate::error::XtaskError;
+use crate::outside::Outside;
 use crate::provenance::workspace;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -57,55 +58,126 @@ impl std::fmt::Display for Counts {
     }
 }
 
+/// What all tests came to.
+pub struct Report {
+    counts: Counts,
+    /// Whether every step went well; a build that fails counts no test.
+    pub ok: bool,
+    /// What was left out for want of a program, loud at the end.
+    notes: Vec<String>,
+}
+
+impl std::fmt::Display for Report {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        for note in &self.notes {
+            writeln!(f, "{note}")?;
+        }
+        write!(f, "{}", self.counts)
+    }
+}
+
 pub fn run(args: &TestArgs) -> Result<(), XtaskError> {
-    let (counts, ok) = all(args.long)?;
-    println!("{counts}");
-    if ok {
+    let report = all(args.long)?;
+    println!("{report}");
+    if report.ok {
         Ok(())
     } else {
         Err(XtaskError::Step("tests failed".to_owned()))
     }
 }
 
-/// Runs everything and returns the counts and whether all went well.
-pub fn all(long: bool) -> Result<(Counts, bool), XtaskError> {
-    let base = [
-        "test",
-        "--release",
-        "--workspace",
-        "--exclude",
-        "topo-bench",
-    ];
-    let mut counts = Counts::default();
-    let mut ok = true;
-    let mut command = cargo(&base);
-    command.args(CHECKED).arg("--no-fail-fast");
-    ok &= step("tests", command, |line| counts.add(line))?;
+/// Runs everything: what needs Python or a browser where there is one.
+pub fn all(long: bool) -> Result<Report, XtaskError> {
+    let mut report = Report {
+        counts: Counts::default(),
+        ok: true,
+        notes: Vec::new(),
+    };
+    let mut ignored = Vec::new();
+    let mut command = harness();
+    command.arg("--no-fail-fast");
+    report.ok &= step("tests", command, |line| {
+        report.counts.add(line);
+        ignored.extend(ignored_test(line).map(str::to_owned));
+    })?;
     if long {
-        let mut command = cargo(&base);
-        command
-            .args(CHECKED)
-            .args(["--no-fail-fast", "--lib", "--bins", "--tests", "--"]);
-        command.args(["--ignored", "long_"]);
-        let mut extra = Counts::default();
-        ok &= step("long tests", command, |line| extra.add(line))?;
-        counts.passed += extra.passed;
-        counts.failed += extra.failed;
-        counts.skipped = counts.skipped.saturating_sub(extra.passed + extra.failed);
+        report.ignored_tests("long tests", "long_")?;
+    }
+    for outside in Outside::ALL {
+        let prefix = outside.prefix();
+        if outside.find().is_some() {
+            report.ignored_tests(
+                &format!("tests that a program outside serves, {prefix}"),
+                prefix,
+            )?;
+        } else {
+            let n = ignored.iter().filter(|t| t.starts_with(prefix)).count();
+            report.notes.push(skipped(n, outside));
+        }
     }
     for (package, example) in examples(&workspace()) {
         // The tests' build has made them; `cargo run` for one package would build its dependencies with other features again.
         let mut command = Command::new(built_example(&example)?);
         command.current_dir(workspace());
         let went = step(&format!("example {package}/{example}"), command, |_| {})?;
-        counts.outcome(went);
-        ok &= went;
+        report.counts.outcome(went);
+        report.ok &= went;
     }
     // A build that fails leaves no closing line of its own.
-    if !ok && counts.failed == 0 {
-        counts.failed = 1;
+    if !report.ok && report.counts.failed == 0 {
+        report.counts.failed = 1;
     }
-    Ok((counts, ok))
+    Ok(report)
+}
+
+impl Report {
+    /// Runs the ignored tests whose names begin with `prefix`; that there is none is a failure.
+    fn ignored_tests(&mut self, what: &str, prefix: &str) -> Result<(), XtaskError> {
+        let mut command = harness();
+        command.args(["--no-fail-fast", "--lib", "--bins", "--tests", "--"]);
+        command.args(["--ignored", prefix]);
+        let mut extra = Counts::default();
+        let went = step(what, command, |line| extra.add(line))?;
+        let n = extra.passed + extra.failed;
+        if went && n == 0 {
+            eprintln!("== {what}: FAILED, no test is named {prefix}");
+        }
+        self.ok &= went && n > 0;
+        self.counts.passed += extra.passed;
+        self.counts.failed += extra.failed;
+        self.counts.skipped = self.counts.skipped.saturating_sub(n);
+        Ok(())
+    }
+}
+
+/// The command that runs the workspace's tests.
+fn harness() -> Command {
+    let mut command = cargo(&[
+        "test",
+        "--release",
+        "--workspace",
+        "--exclude",
+        "topo-bench",
+    ]);
+    command.args(CHECKED);
+    command
+}
+
+/// The name of an ignored test without its modules, if `line` of the test harness reports one.
+fn ignored_test(line: &str) -> Option<&str> {
+    let (name, outcome) = line.trim().strip_prefix("test ")?.split_once(" ... ")?;
+    let name = name.rsplit("::").next().unwrap_or(name);
+    outcome.starts_with("ignored").then_some(name)
+}
+
+/// What is said of `n` tests for which a program is not there.
+fn skipped(n: usize, outside: Outside) -> String {
+    let tests = if n == 1 { "test" } else { "tests" };
+    format!(
+        "SKIPPED: {n} {tests}, {}*: {}",
+        outside.prefix(),
+        outside.needs()
+    )
 }
 
 /// Where cargo puts an example: beside this program.
@@ -156,6 +228,28 @@ mod tests {
             }
         );
         assert_eq!(counts.to_string(), "15 passed, 1 failed, 2 skipped");
+    }
+
+    #[test]
+    fn tests_left_out_are_told_at_the_end() {
+        let line = "test export::tests::python_reads ... ignored, needs Python";
+        assert_eq!(ignored_test(line), Some("python_reads"));
+        assert_eq!(ignored_test("test long_one ... ignored"), Some("long_one"));
+        assert_eq!(ignored_test("test export::tests::other ... ok"), None);
+        let report = Report {
+            counts: Counts {
+                passed: 3,
+                failed: 0,
+                skipped: 2,
+            },
+            ok: true,
+            notes: Outside::ALL.map(|o| skipped(1, o)).to_vec(),
+        };
+        let text = report.to_string();
+        let lines: Vec<&str> = text.lines().collect();
+        assert!(lines[0].starts_with("SKIPPED: 1 test, python_*: needs Python"));
+        assert!(lines[1].contains("TOPO_BROWSER"));
+        assert_eq!(lines[2], "3 passed, 0 failed, 2 skipped");
     }
 
     #[test]

@@ -1,6 +1,7 @@
-//! Files of real cases, read back with PyVista, meshio and numpy where Python has them.
+//! Files of real cases, read back with PyVista, meshio and numpy.
 
 use super::{Wanted, write};
+use crate::outside::Outside;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use topo_analysis::{
@@ -34,18 +35,10 @@ fn colloid(out: &Path, keep_fields: bool) -> PathBuf {
     out.join("nematic").join(report.rows[0].case_name())
 }
 
-/// Python with the readers, named by TOPO_PYTHON or found as `python3`.
-fn python() -> Option<PathBuf> {
-    let name = std::env::var_os("TOPO_PYTHON").unwrap_or_else(|| "python3".into());
-    let there = Command::new(&name)
-        .args(["-c", "import numpy, pyvista, meshio"])
-        .output()
-        .is_ok_and(|o| o.status.success());
-    there.then(|| PathBuf::from(name))
-}
-
 #[test]
-fn exported_cases_are_read_by_pyvista_meshio_and_numpy() {
+#[ignore = "needs Python with numpy, pyvista and meshio: `cargo xtask test` runs it where there is one"]
+fn python_reads_exported_cases_by_pyvista_meshio_and_numpy() {
+    let python = Outside::Python.find().expect(Outside::Python.needs());
     let dir = tempfile::tempdir().unwrap();
     let (rod, ball) = (fibre(dir.path()), colloid(dir.path(), true));
     let (a, b) = (dir.path().join("a"), dir.path().join("b"));
@@ -53,10 +46,6 @@ fn exported_cases_are_read_by_pyvista_meshio_and_numpy() {
     assert!(made.files.iter().all(|f| f.exists()) && made.notes.is_empty());
     let made = write(&ball, &b, &ALL).unwrap();
     assert!(made.files.iter().all(|f| f.exists()) && made.notes.is_empty());
-    let Some(python) = python() else {
-        println!("skipped: no Python with numpy, pyvista and meshio (name one by TOPO_PYTHON)");
-        return;
-    };
     let output = Command::new(python)
         .args(["-c", include_str!("read_back.py")])
         .args([&a, &b])
@@ -152,6 +141,16 @@ fn fields_are_kept_where_asked_for_and_their_absence_is_told() {
         std::fs::read_to_string(case.join("run.json")).unwrap()
     );
     assert!(write(&case, &to, &only).unwrap().notes.is_empty());
+    let made = write(&case, &to, &ALL).unwrap();
+    assert!(made.files.len() > 20 && made.files.iter().all(|f| f.exists()));
+}
+
+#[test]
+fn a_fibre_leaves_every_file_that_is_told_of() {
+    let dir = tempfile::tempdir().unwrap();
+    let made = write(&fibre(dir.path()), &dir.path().join("to"), &ALL).unwrap();
+    assert!(made.files.len() > 3 && made.files.iter().all(|f| f.exists()));
+    assert!(made.notes.is_empty(), "{:?}", made.notes);
 }
 
 #[test]
