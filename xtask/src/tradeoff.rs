@@ -9,7 +9,7 @@ use crate::plot::color::{BLUE, GREEN, INK, PURPLE, QUIET, VERMILION};
 use crate::plot::panel::{Axis, Panel};
 use crate::plot::style::Style;
 use kuva::prelude::{LinePlot, Plot, ScatterPlot};
-use topo_analysis::{HeldBackRow, REFERENCE, Setting, System, TradeoffRow, quantile, settings_of};
+use topo_analysis::{CheckRow, REFERENCE, Setting, System, TradeoffRow, quantile, settings_of};
 
 /// Errors that the short table asks for.
 const WISHES: [f64; 8] = [0.2, 0.1, 0.05, 0.03, 0.02, 0.01, 0.005, 0.002];
@@ -233,41 +233,46 @@ pub fn report(quality: Quality, tables: &[(System, Vec<TradeoffRow>)]) -> String
     text
 }
 
-/// How well the estimates of runs by wish hold on cases that they were not measured on.
-pub fn held_back_report(rows: &[HeldBackRow]) -> String {
+/// How well promises and estimates of runs by wish hold on cases that they were not measured on.
+pub fn check_report(rows: &[CheckRow]) -> String {
     let mut text = String::from(
-        "| system | accuracy asked for | setting | cases | true error, median | 90 % | as good as asked | covered by the estimate | estimate / true, median | CPU s a case |\n|---|---|---|---|---|---|---|---|---|---|\n",
+        "| system | setting | picked for | cases | promised in 90 % | true error, median | 90 % | as good as promised | covered by the estimate | estimate / true, median | CPU s a case |\n|---|---|---|---|---|---|---|---|---|---|---|\n",
     );
-    let mut groups: Vec<(&str, Option<f64>)> = Vec::new();
+    let mut groups: Vec<(&str, Option<&str>)> = Vec::new();
     for r in rows {
-        let group = (r.system.as_str(), Some(r.accuracy));
-        if !groups.contains(&group) {
-            groups.push(group);
+        for group in [
+            (r.system.as_str(), Some(r.setting.as_str())),
+            (&r.system, None),
+        ] {
+            if !groups.contains(&group) {
+                groups.push(group);
+            }
         }
     }
-    groups.extend([("rod", None), ("nematic", None), ("all", None)]);
-    for (system, accuracy) in groups {
-        let of: Vec<&HeldBackRow> = rows
+    groups.sort_by_key(|g| (g.0 != "rod", g.1.is_none()));
+    for (system, setting) in groups {
+        let of: Vec<&CheckRow> = rows
             .iter()
-            .filter(|r| system == "all" || r.system == system)
-            .filter(|r| accuracy.is_none_or(|a| r.accuracy == a))
+            .filter(|r| r.system == system && setting.is_none_or(|s| r.setting == s))
             .collect();
         let errors = || of.iter().filter_map(|r| r.relative_error);
         let (Some(middle), Some(high)) = (quantile(errors(), 0.5), quantile(errors(), 0.9)) else {
             continue;
         };
-        let good = |r: &&&HeldBackRow| r.relative_error.is_some_and(|e| e <= r.accuracy);
+        let good = |r: &&&CheckRow| r.relative_error.is_some_and(|e| e <= r.promised);
+        let share = |n: usize| format!("{n} ({:.0} %)", 100.0 * n as f64 / of.len() as f64);
         // Writing to a string cannot fail.
         let _ = writeln!(
             text,
-            "| {system} | {} | {} | {} | {} | {} | {} | {} | {:.1} | {:.2} |",
-            accuracy.map_or("all".to_owned(), percent),
-            accuracy.map_or("", |_| of[0].setting.as_str()),
+            "| {system} | {} | {} | {} | {} | {} | {} | {} | {} | {:.1} | {:.2} |",
+            setting.unwrap_or("all"),
+            setting.map_or("", |_| of[0].asked.as_str()),
             of.len(),
+            setting.map_or_else(String::new, |_| percent(of[0].promised)),
             percent(middle),
             percent(high),
-            of.iter().filter(good).count(),
-            of.iter().filter(|r| r.is_covered()).count(),
+            share(of.iter().filter(good).count()),
+            share(of.iter().filter(|r| r.is_covered()).count()),
             quantile(of.iter().filter_map(|r| r.ratio()), 0.5).unwrap_or(f64::NAN),
             of.iter().map(|r| r.cpu_seconds).sum::<f64>() / of.len() as f64,
         );
@@ -294,6 +299,44 @@ fn percent(error: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn checked(system: &str, setting: &str, error: Option<f64>, estimate: f64) -> CheckRow {
+        CheckRow {
+            system: system.to_owned(),
+            case: "a".to_owned(),
+            setting: setting.to_owned(),
+            asked: "2 %".to_owned(),
+            promised: 0.02,
+            result: error.map(|e| 1.0 + e),
+            reference: Some(1.0),
+            relative_error: error,
+            estimate: error.map(|_| estimate),
+            cpu_seconds: 2.0,
+        }
+    }
+
+    #[test]
+    fn the_check_counts_what_is_promised_and_covered() {
+        let rows = [
+            checked("nematic", "h = 1", Some(0.01), 0.03),
+            checked("rod", "N = 200", Some(0.01), 0.02),
+            checked("rod", "N = 200", Some(0.03), 0.02),
+            checked("rod", "N = 200", None, 0.0),
+            checked("rod", "N = 400", Some(0.01), 0.04),
+        ];
+        let text = check_report(&rows);
+        let lines: Vec<&str> = text.lines().skip(2).collect();
+        assert_eq!(
+            lines,
+            [
+                "| rod | N = 200 | 2 % | 3 | 2.0 % | 2.0 % | 2.8 % | 1 (33 %) | 1 (33 %) | 1.3 | 2.00 |",
+                "| rod | N = 400 | 2 % | 1 | 2.0 % | 1.0 % | 1.0 % | 1 (100 %) | 1 (100 %) | 4.0 | 2.00 |",
+                "| rod | all |  | 4 |  | 1.0 % | 2.6 % | 2 (50 %) | 2 (50 %) | 2.0 | 2.00 |",
+                "| nematic | h = 1 | 2 % | 1 | 2.0 % | 1.0 % | 1.0 % | 1 (100 %) | 1 (100 %) | 3.0 | 2.00 |",
+                "| nematic | all |  | 1 |  | 1.0 % | 1.0 % | 1 (100 %) | 1 (100 %) | 3.0 | 2.00 |",
+            ]
+        );
+    }
 
     fn row(value: &str, result: f64, error: f64, cpu_seconds: f64) -> TradeoffRow {
         TradeoffRow {

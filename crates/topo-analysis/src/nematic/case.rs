@@ -23,7 +23,7 @@ use crate::table::{push_warning, write_table};
 use crate::times::DischargeTimes;
 
 /// Changes whenever the same scene gives other numbers than before; finished cases of another version are computed again.
-pub(super) const RESULTS_VERSION: u32 = 6;
+pub(crate) const RESULTS_VERSION: u32 = 6;
 
 /// Shares of the energy whose times a row lists.
 pub const NEMATIC_SHARES: [f64; 4] = [0.5, 0.9, 0.99, 0.999];
