@@ -56,7 +56,8 @@ pub enum Command {
   cargo xtask tradeoff --only rod             one system
   cargo xtask tradeoff --quality standard     the settings of `run --accuracy` on more cases; --record keeps them
   cargo xtask tradeoff --set factor           what scales the error estimates of such runs; --record keeps it
-  cargo xtask tradeoff --set check            do these estimates hold, on cases used for neither?")]
+  cargo xtask tradeoff --set check            do these estimates hold, on cases used for neither?
+  cargo xtask tradeoff --set check --record   the same, put into docs/tradeoff.md")]
     Tradeoff(TradeoffArgs),
     /// Measure what each term of a scene costs in time and bytes, with it and without it.
     #[command(after_help = "Examples:
@@ -259,7 +260,7 @@ pub struct TradeoffArgs {
     /// Run the settings of scenes by wish on another set of cases: `factor` (which scales their estimates of the error) or `check` (how well these hold).
     #[arg(long, value_name = "SET", value_parser = ["factor", "check"], conflicts_with = "quality")]
     pub set: Option<String>,
-    /// Write what was measured into the table from which scenes with `accuracy` or `budget` take their settings (with --quality standard), or the factor into it (with --set factor).
+    /// Keep what was measured: the table from which scenes with `accuracy` or `budget` take their settings (with --quality standard), the factor of their estimates (with --set factor), and the tables of docs/tradeoff.md.
     #[arg(long)]
     pub record: bool,
 }

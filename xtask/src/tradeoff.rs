@@ -9,7 +9,9 @@ use crate::plot::color::{BLUE, GREEN, INK, PURPLE, QUIET, VERMILION};
 use crate::plot::panel::{Axis, Panel};
 use crate::plot::style::Style;
 use kuva::prelude::{LinePlot, Plot, ScatterPlot};
-use topo_analysis::{CheckRow, REFERENCE, Setting, System, TradeoffRow, quantile, settings_of};
+use topo_analysis::{
+    CheckRow, REFERENCE, Setting, System, TradeoffRow, points, quantile, settings_of,
+};
 
 /// Errors that the short table asks for.
 const WISHES: [f64; 8] = [0.2, 0.1, 0.05, 0.03, 0.02, 0.01, 0.005, 0.002];
@@ -144,88 +146,112 @@ pub fn report(quality: Quality, tables: &[(System, Vec<TradeoffRow>)]) -> String
          median and the 90th percentile over the cases. Costs are processor seconds of one \
          thread a case, on the machine that ran the command.\n\n"
     );
+    for (system, rows) in tables {
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "## {}\n", system.name());
+        text += &section(quality, *system, rows);
+    }
+    text
+}
+
+/// The part of the report on one system.
+pub fn section(quality: Quality, system: System, rows: &[TradeoffRow]) -> String {
+    let mut text = String::new();
     let mut put = |line: String| {
         // Writing to a string cannot fail.
         let _ = writeln!(text, "{line}");
     };
-    for (system, rows) in tables {
-        let settings = settings_of(rows);
-        put(format!("## {}\n", system.name()));
-        let mut cases: Vec<&str> = rows.iter().map(|r| r.case.as_str()).collect();
-        cases.dedup();
-        cases.sort_unstable();
-        cases.dedup();
-        put(format!("Cases: {}.\n", cases.join("; ")));
-        put("If you can live with an error of ..., use this, it costs ...\n".to_owned());
-        put(
-            "| quantity | error asked for | setting | median | 90 % | CPU s a case | MB |"
-                .to_owned(),
-        );
-        put("|---|---|---|---|---|---|---|".to_owned());
-        for name in quantities(&settings) {
-            let mut last = "";
-            for wish in WISHES {
-                let best = settings
-                    .iter()
-                    .filter(|s| s.quantity == name && s.is_whole() && s.high_error <= wish)
-                    .min_by(|a, b| a.cpu_seconds.total_cmp(&b.cpu_seconds));
-                let Some(s) = best else { continue };
-                if s.value == last {
-                    continue;
-                }
-                last = &s.value;
-                put(format!(
-                    "| {name} | {} | {} {} | {} | {} | {:.2} | {:.1} |",
-                    percent(wish),
-                    s.setting,
-                    s.value,
-                    percent(s.median_error),
-                    percent(s.high_error),
-                    s.cpu_seconds,
-                    s.peak_bytes as f64 / 1e6,
-                ));
-            }
-        }
-        put("\nEvery setting; a star marks the front.\n".to_owned());
-        let names = quantities(&settings);
-        put(format!(
-            "| setting | value | CPU s | MB | {} |",
-            names.join(" | ")
-        ));
-        put(format!("|---|---|---|---|{}", "---|".repeat(names.len())));
-        let mut seen: Vec<(&str, &str)> = Vec::new();
-        for s in &settings {
-            let key = (s.setting.as_str(), s.value.as_str());
-            if seen.contains(&key) {
+    let settings = settings_of(rows);
+    let mut cases: Vec<&str> = rows.iter().map(|r| r.case.as_str()).collect();
+    cases.dedup();
+    cases.sort_unstable();
+    cases.dedup();
+    put(format!("Cases: {}.\n", cases.join("; ")));
+    put("If you can live with an error of ..., use this, it costs ...\n".to_owned());
+    put("| quantity | error asked for | setting | median | 90 % | CPU s a case | MB |".to_owned());
+    put("|---|---|---|---|---|---|---|".to_owned());
+    for name in quantities(&settings) {
+        let mut last = "";
+        for wish in WISHES {
+            let best = settings
+                .iter()
+                .filter(|s| s.quantity == name && s.is_whole() && s.high_error <= wish)
+                .min_by(|a, b| a.cpu_seconds.total_cmp(&b.cpu_seconds));
+            let Some(s) = best else { continue };
+            if s.value == last {
                 continue;
             }
-            seen.push(key);
-            let mut cells = Vec::new();
-            for name in &names {
-                let of = settings
-                    .iter()
-                    .find(|o| (o.setting.as_str(), o.value.as_str()) == key && o.quantity == *name);
-                cells.push(of.map_or_else(String::new, |o| {
-                    let lost = if o.n_failed > 0 {
-                        format!(" ({} of {} without)", o.n_failed, o.n_cases + o.n_failed)
-                    } else {
-                        String::new()
-                    };
-                    let star = if o.pareto { " *" } else { "" };
-                    format!(
-                        "{} / {}{lost}{star}",
-                        percent(o.median_error),
-                        percent(o.high_error)
-                    )
-                }));
-            }
+            last = &s.value;
             put(format!(
-                "| {} | {} | {:.2} | {:.1} | {} |",
+                "| {name} | {} | {} {} | {} | {} | {:.2} | {:.1} |",
+                percent(wish),
                 s.setting,
                 s.value,
+                percent(s.median_error),
+                percent(s.high_error),
                 s.cpu_seconds,
                 s.peak_bytes as f64 / 1e6,
-                cells.join(" | ")
+            ));
+        }
+    }
+    put("\nEvery setting; a star marks the front.\n".to_owned());
+    let names = quantities(&settings);
+    put(format!(
+        "| setting | value | CPU s | MB | {} |",
+        names.join(" | ")
+    ));
+    put(format!("|---|---|---|---|{}", "---|".repeat(names.len())));
+    let mut seen: Vec<(&str, &str)> = Vec::new();
+    for s in &settings {
+        let key = (s.setting.as_str(), s.value.as_str());
+        if seen.contains(&key) {
+            continue;
+        }
+        seen.push(key);
+        let mut cells = Vec::new();
+        for name in &names {
+            let of = settings
+                .iter()
+                .find(|o| (o.setting.as_str(), o.value.as_str()) == key && o.quantity == *name);
+            cells.push(of.map_or_else(String::new, |o| {
+                let lost = if o.n_failed > 0 {
+                    format!(" ({} of {} without)", o.n_failed, o.n_cases + o.n_failed)
+                } else {
+                    String::new()
+                };
+                let star = if o.pareto { " *" } else { "" };
+                format!(
+                    "{} / {}{lost}{star}",
+                    percent(o.median_error),
+                    percent(o.high_error)
+                )
+            }));
+        }
+        put(format!(
+            "| {} | {} | {:.2} | {:.1} | {} |",
+            s.setting,
+            s.value,
+            s.cpu_seconds,
+            s.peak_bytes as f64 / 1e6,
+            cells.join(" | ")
+        ));
+    }
+    put(String::new());
+    let points = points(system, rows);
+    if quality == Quality::Standard && !points.is_empty() {
+        put("What scenes by wish choose from: errors of the last time listed, of a colloid of the time extrapolated with the coarser run; costs of both runs.\n".to_owned());
+        put("| setting | coarser run | cases | median | 90 % | CPU s a case | MB |".to_owned());
+        put("|---|---|---|---|---|---|---|".to_owned());
+        for p in points {
+            put(format!(
+                "| {} | {} | {} | {} | {} | {:.2} | {:.1} |",
+                system.resolution_name(p.resolution, p.tolerance),
+                system.resolution_name(p.check_resolution, p.check_tolerance),
+                p.n_cases,
+                percent(p.median_error),
+                percent(p.high_error),
+                p.cpu_seconds,
+                p.peak_bytes as f64 / 1e6,
             ));
         }
         put(String::new());

@@ -265,11 +265,13 @@ pub fn compared(system: System, runs: &[TradeoffRun]) -> Vec<TradeoffRow> {
     rows
 }
 
-/// Name of a value of the setting `resolution`.
-pub(crate) fn resolution_name(system: System, resolution: f64, tolerance: f64) -> String {
-    match system {
-        System::Nematic => nematic::resolution(resolution, tolerance),
-        _ => rod::resolution(resolution as usize, tolerance),
+impl System {
+    /// Name of a resolution (edges, or a spacing in xi_N) with a tolerance, as trade-offs give it.
+    pub fn resolution_name(self, resolution: f64, tolerance: f64) -> String {
+        match self {
+            Self::Nematic => nematic::resolution(resolution, tolerance),
+            _ => rod::resolution(resolution as usize, tolerance),
+        }
     }
 }
 

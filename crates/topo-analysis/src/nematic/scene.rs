@@ -182,9 +182,9 @@ impl NematicScene {
 }
 
 /// Most that a fitted grid is finer than asked for.
-const FINER: f64 = 0.08;
+const FINER: f64 = 0.12;
 /// Sides that miss the cell by less than this share are met.
-const MET: f64 = 1e-3;
+const MET: f64 = 2e-3;
 
 /// Gives `nematic` a grid of at most this spacing, such that its plates are as far apart as it says and its sides nearly.
 ///

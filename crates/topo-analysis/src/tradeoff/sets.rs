@@ -48,15 +48,10 @@ impl Colloid {
 
 /// The middle one of those that the table was measured on; costs are in units of its.
 pub(crate) const MEASURED: Colloid = Colloid {
-    radius: 6.5,
+    radius: 7.0,
     q: 3,
-    cell: SMALL,
+    cell: [36.0 / 7.0, 36.0 / 7.0, 36.0 / 7.0],
 };
-
-/// Shapes of cells.
-const SMALL: [f64; 3] = [5.0, 5.0, 4.0];
-const NEARLY: [f64; 3] = [36.0 / 7.0, 36.0 / 7.0, 30.0 / 7.0];
-const DEFAULT: [f64; 3] = [40.0 / 7.0, 40.0 / 7.0, 30.0 / 7.0];
 
 /// Of the cases of the published sweep each tenth, so that all knots and all twists are there.
 const EVERY: usize = 10;
@@ -75,32 +70,43 @@ pub(super) fn rods(set: CaseSet) -> Result<Vec<(String, f64)>, AnalysisError> {
     Ok(named.skip(first).step_by(EVERY).collect())
 }
 
+/// Edges of cells (xi_N) that grids of all spacings meet: multiples of 12.
+const FLAT: [f64; 3] = [36.0, 36.0, 24.0];
+const CUBE: [f64; 3] = [36.0, 36.0, 36.0];
+const WIDE: [f64; 3] = [48.0, 48.0, 36.0];
+/// The default shape at R = 9.8, which they meet nearly.
+const DEFAULT: [f64; 3] = [56.0, 56.0, 42.0];
+
 /// Particles small enough for fine grids. Their patterns are about as fine as those of larger ones below the buckling of
-/// their rings: 2πR/q is 10 ξ_N or more. The cells of the check have the default shape.
+/// their rings: 2πR/q is 10 ξ_N or more.
 pub(super) fn colloids(set: CaseSet) -> Vec<Colloid> {
     let groups: &[(f64, [f64; 3], &[i32])] = match set {
         CaseSet::Table => &[
-            (6.0, SMALL, &[1, 3]),
-            (6.5, SMALL, &[1, 2, 3, 4]),
-            (7.0, NEARLY, &[1, 2, 3, 4]),
-            (7.5, SMALL, &[1, 2, 3, 4]),
-            (9.0, SMALL, &[3, 5]),
+            (6.0, FLAT, &[1, 2, 3]),
+            (6.5, FLAT, &[1, 2, 3, 4]),
+            (7.0, CUBE, &[1, 2, 3, 4]),
+            (8.0, WIDE, &[2, 4, 5]),
+            (9.0, WIDE, &[3, 5]),
         ],
         CaseSet::Factor => &[
-            (6.25, DEFAULT, &[2, 3]),
-            (6.75, SMALL, &[1, 2, 3, 4]),
-            (7.25, SMALL, &[1, 2, 3, 4]),
-            (8.0, SMALL, &[2, 4, 5]),
+            (6.25, FLAT, &[1, 2, 3]),
+            (6.75, CUBE, &[1, 2, 3, 4]),
+            (7.25, CUBE, &[1, 2, 3, 4]),
+            (8.5, WIDE, &[3, 5]),
         ],
         CaseSet::Check => &[
-            (6.1, DEFAULT, &[1, 2, 3]),
-            (6.6, DEFAULT, &[1, 2, 3, 4]),
-            (7.1, DEFAULT, &[1, 3, 4]),
-            (8.5, DEFAULT, &[2, 4, 5]),
+            (6.4, FLAT, &[1, 3]),
+            (7.6, CUBE, &[1, 2, 3, 4]),
+            (8.4, WIDE, &[1, 2, 3, 4]),
+            (9.8, DEFAULT, &[2, 4, 6]),
         ],
     };
     let of = |&(radius, cell, charges): &(f64, [f64; 3], &[i32])| {
-        let one = move |&q| Colloid { radius, q, cell };
+        let one = move |&q| Colloid {
+            radius,
+            q,
+            cell: cell.map(|edge| edge / radius),
+        };
         charges.iter().map(one).collect::<Vec<_>>()
     };
     groups.iter().flat_map(of).collect()

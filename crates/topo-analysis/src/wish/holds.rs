@@ -8,7 +8,7 @@ use super::pair::{Measurement, cases};
 use super::table::Point;
 use crate::statistics::quantile;
 use crate::system::System;
-use crate::tradeoff::{TradeoffRow, resolution_name};
+use crate::tradeoff::TradeoffRow;
 
 /// Accuracies asked for in the check.
 const ASKED: [f64; 5] = [0.1, 0.05, 0.03, 0.02, 0.01];
@@ -105,7 +105,7 @@ pub fn check_estimates(
             found.push(CheckRow {
                 system: system.name().to_owned(),
                 case: case.to_owned(),
-                setting: resolution_name(system, point.resolution, point.tolerance),
+                setting: system.resolution_name(point.resolution, point.tolerance),
                 asked: asked.join(", "),
                 promised: point.high_error,
                 result: measured.pair.value,

@@ -4,11 +4,14 @@ use serde::{Deserialize, Serialize};
 
 use super::table::Setting;
 use crate::system::System;
-use crate::tradeoff::{TradeoffRow, fitted_ratio, resolution_name};
+use crate::tradeoff::{TradeoffRow, fitted_ratio};
 
 /// Order of the error in the resolution. In colloids it holds, and the value is extrapolated; in rods (near ties of contacts,
 /// places of cuts among the vertices) hardly, so that it only turns a difference into an error of about the right size.
 const ORDER: f64 = 2.0;
+
+/// Grids nearer to each other tell nothing: small cells may have hardly another one.
+const LEAST_RATIO: f64 = 1.05;
 
 /// What a run and a coarser one say of the last time listed.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -26,7 +29,7 @@ impl Pair {
     /// `times_are_extrapolated_at_second_order`
     pub(crate) fn of(system: System, fine: Option<f64>, coarse: Option<f64>, ratio: f64) -> Self {
         let gain = ratio.powf(ORDER) - 1.0;
-        let both = fine.zip(coarse);
+        let both = fine.zip(coarse).filter(|_| ratio > LEAST_RATIO);
         let value = match both {
             Some((fine, coarse)) if system == System::Nematic => {
                 Some(fine + (fine - coarse) / gain)
@@ -54,7 +57,7 @@ impl Measurement {
     /// What the rows of a trade-off say of a case at a setting.
     pub(super) fn of(system: System, setting: &Setting, case: &str, rows: &[TradeoffRow]) -> Self {
         let at = |(resolution, tolerance): (f64, f64)| {
-            let value = resolution_name(system, resolution, tolerance);
+            let value = system.resolution_name(resolution, tolerance);
             rows.iter().find(|r| {
                 r.case == case
                     && r.setting == "resolution"
@@ -113,6 +116,9 @@ mod tests {
         assert_eq!((rod.value, rod.told), (Some(time(0.5)), colloid.told));
         let alone = Pair::of(System::Nematic, Some(3.0), None, 1.5);
         assert_eq!((alone.value, alone.told), (Some(3.0), None));
+        // two runs on one grid tell nothing
+        let same = Pair::of(System::Nematic, Some(3.0), Some(3.1), 1.0);
+        assert_eq!((same.value, same.told), (Some(3.0), None));
         assert_eq!(Pair::of(System::Rod, None, Some(3.0), 1.5).value, None);
     }
 }

@@ -86,7 +86,7 @@ pub fn points(system: System, rows: &[TradeoffRow]) -> Vec<Point> {
         let bytes = rows
             .iter()
             .filter(|r| quantity(system) == Some(r.quantity.as_str()))
-            .filter(|r| r.value == crate::tradeoff::resolution_name(system, pair[1].0, pair[1].1));
+            .filter(|r| r.value == system.resolution_name(pair[1].0, pair[1].1));
         Some(Point {
             resolution: setting.fine.0,
             tolerance: setting.fine.1,
@@ -105,7 +105,7 @@ pub fn points(system: System, rows: &[TradeoffRow]) -> Vec<Point> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tradeoff::{REFERENCE, TradeoffRun, compared, resolution_name};
+    use crate::tradeoff::{REFERENCE, TradeoffRun, compared};
 
     /// Runs of the whole ladder whose time is that of `time` at the resolution.
     fn rows(system: System, time: impl Fn(f64) -> Option<f64>) -> Vec<TradeoffRow> {
@@ -124,7 +124,7 @@ mod tests {
             };
             put(REFERENCE, "finest".to_owned(), Some(10.0));
             for (resolution, tolerance) in ladder_of(system) {
-                let value = resolution_name(system, resolution, tolerance);
+                let value = system.resolution_name(resolution, tolerance);
                 put("resolution", value, time(resolution));
             }
         }

@@ -3,9 +3,11 @@
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
+use super::super::record::record_part;
 use super::{kept, measure};
 use crate::cli::TradeoffArgs;
 use crate::error::XtaskError;
+use crate::figures::Quality;
 use crate::provenance::{commit, workspace};
 use crate::{data, interrupt};
 use topo_analysis::{
@@ -49,7 +51,11 @@ fn write_record(table: Measured, record: &Record) -> Result<(), XtaskError> {
     Ok(())
 }
 
-/// Writes what a trade-off measured into the table of its system, which has no factor then; knots have no table.
+/// The page on all this.
+const PAGE: &str = "tradeoff.md";
+
+/// Writes what a trade-off measured into the table of its system, which has no factor then, and into the page; knots have no
+/// table.
 pub fn record_table(system: System, rows: &[TradeoffRow]) -> Result<(), XtaskError> {
     let Some(table) = Measured::ALL.into_iter().find(|t| t.system() == system) else {
         return Ok(());
@@ -63,7 +69,9 @@ pub fn record_table(system: System, rows: &[TradeoffRow]) -> Result<(), XtaskErr
         table: stamp(table, n_cases),
         factor: None,
     };
-    write_record(table, &record)
+    write_record(table, &record)?;
+    let text = crate::tradeoff::section(Quality::Standard, system, rows);
+    record_part(PAGE, &format!("{} settings", system.name()), &text)
 }
 
 /// Runs the settings of wishes on the cases of a set: the factor from one, how it holds from the other.
@@ -124,6 +132,23 @@ pub fn measure_set(args: &TradeoffArgs, name: &str, folder: &Path) -> Result<(),
         let report = crate::tradeoff::check_report(&checked);
         data::write(&folder.join("check.md"), report.as_bytes())?;
         println!("{report}");
+        if args.record {
+            for table in Measured::ALL {
+                let name = table.system().name();
+                let of: Vec<CheckRow> = checked
+                    .iter()
+                    .filter(|r| r.system == name)
+                    .cloned()
+                    .collect();
+                if !of.is_empty() {
+                    record_part(
+                        PAGE,
+                        &format!("{name} check"),
+                        &crate::tradeoff::check_report(&of),
+                    )?;
+                }
+            }
+        }
     }
     Ok(())
 }
