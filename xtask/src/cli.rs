@@ -60,8 +60,10 @@ pub enum Command {
     #[command(after_help = "Examples:
   cargo xtask tradeoff                        draft: minutes
   cargo xtask tradeoff --only rod             one system
-  cargo xtask tradeoff --quality standard     more cases, finer settings
-  cargo xtask tradeoff --held-back            do the error estimates of `run --accuracy` hold?")]
+  cargo xtask tradeoff --quality standard     the settings of `run --accuracy` on more cases; --record keeps them
+  cargo xtask tradeoff --set factor           what scales the error estimates of such runs; --record keeps it
+  cargo xtask tradeoff --set check            do these estimates hold, on cases used for neither?
+  cargo xtask tradeoff --set check --record   the same, put into docs/tradeoff.md")]
     Tradeoff(TradeoffArgs),
     /// Measure what each term of a scene costs in time and bytes, with it and without it.
     #[command(after_help = "Examples:
@@ -249,6 +251,13 @@ pub struct SystemsArgs {
     pub work: WorkArgs,
 }
 
+impl SystemsArgs {
+    /// Whether a system is among those asked for.
+    pub fn takes(&self, system: topo_analysis::System) -> bool {
+        self.only.is_empty() || self.only.iter().any(|name| name == system.name())
+    }
+}
+
 /// Options of `buckling`.
 #[derive(Debug, Args)]
 pub struct BucklingArgs {
@@ -267,11 +276,11 @@ pub struct BucklingArgs {
 pub struct TradeoffArgs {
     #[command(flatten)]
     pub systems: SystemsArgs,
-    /// Check the error estimates of runs by wish on cases that the table was not measured on, instead of measuring it.
+    /// Run the settings of scenes by wish on another set of cases: `factor` (which scales their estimates of the error) or `check` (how well these hold).
+    #[arg(long, value_name = "SET", value_parser = ["factor", "check"], conflicts_with = "quality")]
+    pub set: Option<String>,
+    /// Keep what was measured: the table from which scenes with `accuracy` or `budget` take their settings (with --quality standard), the factor of their estimates (with --set factor), and the tables of docs/tradeoff.md.
     #[arg(long)]
-    pub held_back: bool,
-    /// Write what was measured into the table from which scenes with `accuracy` or `budget` take their settings.
-    #[arg(long, conflicts_with = "held_back")]
     pub record: bool,
 }
 

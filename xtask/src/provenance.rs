@@ -148,7 +148,8 @@ pub fn workspace() -> PathBuf {
     }
 }
 
-fn commit(root: &Path) -> String {
+/// The commit of a folder, with `+changes` when files differ from it.
+pub fn commit(root: &Path) -> String {
     let git = |arguments: &[&str]| {
         let output = Command::new("git")
             .arg("-C")

@@ -9,7 +9,9 @@ use crate::plot::color::{BLUE, GREEN, INK, PURPLE, QUIET, VERMILION};
 use crate::plot::panel::{Axis, Panel};
 use crate::plot::style::Style;
 use kuva::prelude::{LinePlot, Plot, ScatterPlot};
-use topo_analysis::{HeldBackRow, REFERENCE, Setting, System, TradeoffRow, quantile, settings_of};
+use topo_analysis::{
+    CheckRow, REFERENCE, Setting, System, TradeoffRow, points, quantile, settings_of,
+};
 
 /// Errors that the short table asks for.
 const WISHES: [f64; 8] = [0.2, 0.1, 0.05, 0.03, 0.02, 0.01, 0.005, 0.002];
@@ -144,88 +146,112 @@ pub fn report(quality: Quality, tables: &[(System, Vec<TradeoffRow>)]) -> String
          median and the 90th percentile over the cases. Costs are processor seconds of one \
          thread a case, on the machine that ran the command.\n\n"
     );
+    for (system, rows) in tables {
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "## {}\n", system.name());
+        text += &section(quality, *system, rows);
+    }
+    text
+}
+
+/// The part of the report on one system.
+pub fn section(quality: Quality, system: System, rows: &[TradeoffRow]) -> String {
+    let mut text = String::new();
     let mut put = |line: String| {
         // Writing to a string cannot fail.
         let _ = writeln!(text, "{line}");
     };
-    for (system, rows) in tables {
-        let settings = settings_of(rows);
-        put(format!("## {}\n", system.name()));
-        let mut cases: Vec<&str> = rows.iter().map(|r| r.case.as_str()).collect();
-        cases.dedup();
-        cases.sort_unstable();
-        cases.dedup();
-        put(format!("Cases: {}.\n", cases.join("; ")));
-        put("If you can live with an error of ..., use this, it costs ...\n".to_owned());
-        put(
-            "| quantity | error asked for | setting | median | 90 % | CPU s a case | MB |"
-                .to_owned(),
-        );
-        put("|---|---|---|---|---|---|---|".to_owned());
-        for name in quantities(&settings) {
-            let mut last = "";
-            for wish in WISHES {
-                let best = settings
-                    .iter()
-                    .filter(|s| s.quantity == name && s.is_whole() && s.high_error <= wish)
-                    .min_by(|a, b| a.cpu_seconds.total_cmp(&b.cpu_seconds));
-                let Some(s) = best else { continue };
-                if s.value == last {
-                    continue;
-                }
-                last = &s.value;
-                put(format!(
-                    "| {name} | {} | {} {} | {} | {} | {:.2} | {:.1} |",
-                    percent(wish),
-                    s.setting,
-                    s.value,
-                    percent(s.median_error),
-                    percent(s.high_error),
-                    s.cpu_seconds,
-                    s.peak_bytes as f64 / 1e6,
-                ));
-            }
-        }
-        put("\nEvery setting; a star marks the front.\n".to_owned());
-        let names = quantities(&settings);
-        put(format!(
-            "| setting | value | CPU s | MB | {} |",
-            names.join(" | ")
-        ));
-        put(format!("|---|---|---|---|{}", "---|".repeat(names.len())));
-        let mut seen: Vec<(&str, &str)> = Vec::new();
-        for s in &settings {
-            let key = (s.setting.as_str(), s.value.as_str());
-            if seen.contains(&key) {
+    let settings = settings_of(rows);
+    let mut cases: Vec<&str> = rows.iter().map(|r| r.case.as_str()).collect();
+    cases.dedup();
+    cases.sort_unstable();
+    cases.dedup();
+    put(format!("Cases: {}.\n", cases.join("; ")));
+    put("If you can live with an error of ..., use this, it costs ...\n".to_owned());
+    put("| quantity | error asked for | setting | median | 90 % | CPU s a case | MB |".to_owned());
+    put("|---|---|---|---|---|---|---|".to_owned());
+    for name in quantities(&settings) {
+        let mut last = "";
+        for wish in WISHES {
+            let best = settings
+                .iter()
+                .filter(|s| s.quantity == name && s.is_whole() && s.high_error <= wish)
+                .min_by(|a, b| a.cpu_seconds.total_cmp(&b.cpu_seconds));
+            let Some(s) = best else { continue };
+            if s.value == last {
                 continue;
             }
-            seen.push(key);
-            let mut cells = Vec::new();
-            for name in &names {
-                let of = settings
-                    .iter()
-                    .find(|o| (o.setting.as_str(), o.value.as_str()) == key && o.quantity == *name);
-                cells.push(of.map_or_else(String::new, |o| {
-                    let lost = if o.n_failed > 0 {
-                        format!(" ({} of {} without)", o.n_failed, o.n_cases + o.n_failed)
-                    } else {
-                        String::new()
-                    };
-                    let star = if o.pareto { " *" } else { "" };
-                    format!(
-                        "{} / {}{lost}{star}",
-                        percent(o.median_error),
-                        percent(o.high_error)
-                    )
-                }));
-            }
+            last = &s.value;
             put(format!(
-                "| {} | {} | {:.2} | {:.1} | {} |",
+                "| {name} | {} | {} {} | {} | {} | {:.2} | {:.1} |",
+                percent(wish),
                 s.setting,
                 s.value,
+                percent(s.median_error),
+                percent(s.high_error),
                 s.cpu_seconds,
                 s.peak_bytes as f64 / 1e6,
-                cells.join(" | ")
+            ));
+        }
+    }
+    put("\nEvery setting; a star marks the front.\n".to_owned());
+    let names = quantities(&settings);
+    put(format!(
+        "| setting | value | CPU s | MB | {} |",
+        names.join(" | ")
+    ));
+    put(format!("|---|---|---|---|{}", "---|".repeat(names.len())));
+    let mut seen: Vec<(&str, &str)> = Vec::new();
+    for s in &settings {
+        let key = (s.setting.as_str(), s.value.as_str());
+        if seen.contains(&key) {
+            continue;
+        }
+        seen.push(key);
+        let mut cells = Vec::new();
+        for name in &names {
+            let of = settings
+                .iter()
+                .find(|o| (o.setting.as_str(), o.value.as_str()) == key && o.quantity == *name);
+            cells.push(of.map_or_else(String::new, |o| {
+                let lost = if o.n_failed > 0 {
+                    format!(" ({} of {} without)", o.n_failed, o.n_cases + o.n_failed)
+                } else {
+                    String::new()
+                };
+                let star = if o.pareto { " *" } else { "" };
+                format!(
+                    "{} / {}{lost}{star}",
+                    percent(o.median_error),
+                    percent(o.high_error)
+                )
+            }));
+        }
+        put(format!(
+            "| {} | {} | {:.2} | {:.1} | {} |",
+            s.setting,
+            s.value,
+            s.cpu_seconds,
+            s.peak_bytes as f64 / 1e6,
+            cells.join(" | ")
+        ));
+    }
+    put(String::new());
+    let points = points(system, rows);
+    if quality == Quality::Standard && !points.is_empty() {
+        put("What scenes by wish choose from: errors of the last time listed, of a colloid of the time extrapolated with the coarser run; costs of both runs.\n".to_owned());
+        put("| setting | coarser run | cases | median | 90 % | CPU s a case | MB |".to_owned());
+        put("|---|---|---|---|---|---|---|".to_owned());
+        for p in points {
+            put(format!(
+                "| {} | {} | {} | {} | {} | {:.2} | {:.1} |",
+                system.resolution_name(p.resolution, p.tolerance),
+                system.resolution_name(p.check_resolution, p.check_tolerance),
+                p.n_cases,
+                percent(p.median_error),
+                percent(p.high_error),
+                p.cpu_seconds,
+                p.peak_bytes as f64 / 1e6,
             ));
         }
         put(String::new());
@@ -233,41 +259,46 @@ pub fn report(quality: Quality, tables: &[(System, Vec<TradeoffRow>)]) -> String
     text
 }
 
-/// How well the estimates of runs by wish hold on cases that they were not measured on.
-pub fn held_back_report(rows: &[HeldBackRow]) -> String {
+/// How well promises and estimates of runs by wish hold on cases that they were not measured on.
+pub fn check_report(rows: &[CheckRow]) -> String {
     let mut text = String::from(
-        "| system | accuracy asked for | setting | cases | true error, median | 90 % | as good as asked | covered by the estimate | estimate / true, median | CPU s a case |\n|---|---|---|---|---|---|---|---|---|---|\n",
+        "| system | setting | picked for | cases | promised in 90 % | true error, median | 90 % | as good as promised | covered by the estimate | estimate / true, median | CPU s a case |\n|---|---|---|---|---|---|---|---|---|---|---|\n",
     );
-    let mut groups: Vec<(&str, Option<f64>)> = Vec::new();
+    let mut groups: Vec<(&str, Option<&str>)> = Vec::new();
     for r in rows {
-        let group = (r.system.as_str(), Some(r.accuracy));
-        if !groups.contains(&group) {
-            groups.push(group);
+        for group in [
+            (r.system.as_str(), Some(r.setting.as_str())),
+            (&r.system, None),
+        ] {
+            if !groups.contains(&group) {
+                groups.push(group);
+            }
         }
     }
-    groups.extend([("rod", None), ("nematic", None), ("all", None)]);
-    for (system, accuracy) in groups {
-        let of: Vec<&HeldBackRow> = rows
+    groups.sort_by_key(|g| (g.0 != "rod", g.1.is_none()));
+    for (system, setting) in groups {
+        let of: Vec<&CheckRow> = rows
             .iter()
-            .filter(|r| system == "all" || r.system == system)
-            .filter(|r| accuracy.is_none_or(|a| r.accuracy == a))
+            .filter(|r| r.system == system && setting.is_none_or(|s| r.setting == s))
             .collect();
         let errors = || of.iter().filter_map(|r| r.relative_error);
         let (Some(middle), Some(high)) = (quantile(errors(), 0.5), quantile(errors(), 0.9)) else {
             continue;
         };
-        let good = |r: &&&HeldBackRow| r.relative_error.is_some_and(|e| e <= r.accuracy);
+        let good = |r: &&&CheckRow| r.relative_error.is_some_and(|e| e <= r.promised);
+        let share = |n: usize| format!("{n} ({:.0} %)", 100.0 * n as f64 / of.len() as f64);
         // Writing to a string cannot fail.
         let _ = writeln!(
             text,
-            "| {system} | {} | {} | {} | {} | {} | {} | {} | {:.1} | {:.2} |",
-            accuracy.map_or("all".to_owned(), percent),
-            accuracy.map_or("", |_| of[0].setting.as_str()),
+            "| {system} | {} | {} | {} | {} | {} | {} | {} | {} | {:.1} | {:.2} |",
+            setting.unwrap_or("all"),
+            setting.map_or("", |_| of[0].asked.as_str()),
             of.len(),
+            setting.map_or_else(String::new, |_| percent(of[0].promised)),
             percent(middle),
             percent(high),
-            of.iter().filter(good).count(),
-            of.iter().filter(|r| r.is_covered()).count(),
+            share(of.iter().filter(good).count()),
+            share(of.iter().filter(|r| r.is_covered()).count()),
             quantile(of.iter().filter_map(|r| r.ratio()), 0.5).unwrap_or(f64::NAN),
             of.iter().map(|r| r.cpu_seconds).sum::<f64>() / of.len() as f64,
         );
@@ -294,6 +325,44 @@ fn percent(error: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn checked(system: &str, setting: &str, error: Option<f64>, estimate: f64) -> CheckRow {
+        CheckRow {
+            system: system.to_owned(),
+            case: "a".to_owned(),
+            setting: setting.to_owned(),
+            asked: "2 %".to_owned(),
+            promised: 0.02,
+            result: error.map(|e| 1.0 + e),
+            reference: Some(1.0),
+            relative_error: error,
+            estimate: error.map(|_| estimate),
+            cpu_seconds: 2.0,
+        }
+    }
+
+    #[test]
+    fn the_check_counts_what_is_promised_and_covered() {
+        let rows = [
+            checked("nematic", "h = 1", Some(0.01), 0.03),
+            checked("rod", "N = 200", Some(0.01), 0.02),
+            checked("rod", "N = 200", Some(0.03), 0.02),
+            checked("rod", "N = 200", None, 0.0),
+            checked("rod", "N = 400", Some(0.01), 0.04),
+        ];
+        let text = check_report(&rows);
+        let lines: Vec<&str> = text.lines().skip(2).collect();
+        assert_eq!(
+            lines,
+            [
+                "| rod | N = 200 | 2 % | 3 | 2.0 % | 2.0 % | 2.8 % | 1 (33 %) | 1 (33 %) | 1.3 | 2.00 |",
+                "| rod | N = 400 | 2 % | 1 | 2.0 % | 1.0 % | 1.0 % | 1 (100 %) | 1 (100 %) | 4.0 | 2.00 |",
+                "| rod | all |  | 4 |  | 1.0 % | 2.6 % | 2 (50 %) | 2 (50 %) | 2.0 | 2.00 |",
+                "| nematic | h = 1 | 2 % | 1 | 2.0 % | 1.0 % | 1.0 % | 1 (100 %) | 1 (100 %) | 3.0 | 2.00 |",
+                "| nematic | all |  | 1 |  | 1.0 % | 1.0 % | 1 (100 %) | 1 (100 %) | 3.0 | 2.00 |",
+            ]
+        );
+    }
 
     fn row(value: &str, result: f64, error: f64, cpu_seconds: f64) -> TradeoffRow {
         TradeoffRow {

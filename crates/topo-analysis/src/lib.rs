@@ -51,7 +51,10 @@ pub use terms::{TermCost, term_costs};
 pub use timeline::{Timeline, TimelineSettings, TypedSample, UNKNOT};
 pub use times::{DischargeTimes, ELASTIC_SHARES, Interpolated};
 pub use tradeoff::{
-    HeldBackRow, PeakBytes, REFERENCE, Setting, TradeoffEvent, TradeoffRow, TradeoffRun,
-    TradeoffWork, compared, held_back, settings_of, tradeoff,
+    CaseSet, PeakBytes, REFERENCE, Setting, TradeoffEvent, TradeoffRow, TradeoffRun, TradeoffWork,
+    compared, ladder, settings_of, tradeoff,
 };
-pub use wish::{ErrorRow, Grant, Point, Wish, errors_of_colloids, errors_of_rods, points};
+pub use wish::{
+    COVERED, CheckRow, ErrorRow, Factor, Grant, Measured, Point, Record, Stamp, Wish,
+    check_estimates, errors_of_colloids, errors_of_rods, factor_of_estimates, points, table_hash,
+};

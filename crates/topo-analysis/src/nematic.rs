@@ -13,10 +13,12 @@ mod sweep;
 mod table;
 
 pub use case::{NEMATIC_SHARES, RESULTS_VERSION as NEMATIC_RESULTS_VERSION};
+pub(crate) use case::RESULTS_VERSION;
 pub use field::FieldSnapshot;
 pub use frames::{NematicFrame, nematic_frames};
 pub use onset::{BucklingCase, BucklingRow, buckling_cases, buckling_study};
 pub use resonance::{NematicResonance, buckling, nematic_resonance, resonance_peak};
+pub(crate) use scene::fit;
 pub use scene::{NematicCase, NematicScene};
 pub use sweep::{NematicReport, estimate_nematic_sweep, run_nematic_sweep};
 pub use table::{LinePoint, NematicRow, NematicSample, SlicePoint};

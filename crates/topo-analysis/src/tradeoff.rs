@@ -1,10 +1,10 @@
 //! Speed against accuracy: the same cases under many settings, compared with converged references.
 
 mod front;
-mod held_back;
 mod knots;
 mod nematic;
 mod rod;
+mod sets;
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -13,8 +13,8 @@ use topo_core::{CpuClock, Interrupt};
 use crate::AnalysisError;
 use crate::system::{Effort, System};
 pub use front::{Setting, settings_of};
-pub use held_back::{HeldBackRow, held_back};
-pub(crate) use nematic::{MEASURED_CELL, MEASURED_RADIUS};
+pub use sets::CaseSet;
+pub(crate) use sets::MEASURED;
 
 /// Name of the setting that the others are compared with.
 pub const REFERENCE: &str = "reference";
@@ -152,13 +152,38 @@ pub fn tradeoff(
     effort: Effort,
     work: &TradeoffWork<'_>,
 ) -> Result<Vec<TradeoffRun>, AnalysisError> {
-    let trials = match system {
-        System::Rod => rod::trials(effort, work)?,
-        System::Nematic => nematic::trials(effort),
-        System::Knots => knots::trials(effort)?,
+    let trials = match (system, effort) {
+        (System::Rod, Effort::Draft) => rod::trials(work)?,
+        (System::Nematic, Effort::Draft) => nematic::trials(),
+        (System::Knots, _) => knots::trials(effort)?,
+        (_, Effort::Standard) => return ladder(system, CaseSet::Table, work),
     };
     (work.told)(TradeoffEvent::Begin(trials.len()));
     run_all(&trials, work)
+}
+
+/// Runs the settings that wishes choose from on the cases of a set; what is `known` is not run again.
+///
+/// When interrupted, what is finished is returned. There is no ladder of knots.
+///
+/// # Errors
+/// A case that cannot be set up.
+pub fn ladder(
+    system: System,
+    set: CaseSet,
+    work: &TradeoffWork<'_>,
+) -> Result<Vec<TradeoffRun>, AnalysisError> {
+    let trials = match system {
+        System::Rod => rod::ladder_trials(set, work)?,
+        System::Nematic => nematic::ladder_trials(set),
+        System::Knots => Vec::new(),
+    };
+    (work.told)(TradeoffEvent::Begin(trials.len()));
+    let runs = run_all(&trials, work)?;
+    Ok(match system {
+        System::Nematic => nematic::with_references(runs),
+        _ => runs,
+    })
 }
 
 fn run_all(trials: &[Trial], work: &TradeoffWork<'_>) -> Result<Vec<TradeoffRun>, AnalysisError> {
@@ -240,12 +265,30 @@ pub fn compared(system: System, runs: &[TradeoffRun]) -> Vec<TradeoffRow> {
     rows
 }
 
-/// Edges (or spacing) and tolerance of a value of the setting `resolution`.
-pub(crate) fn resolution_of(system: System, value: &str) -> Option<(f64, f64)> {
+impl System {
+    /// Name of a resolution (edges, or a spacing in xi_N) with a tolerance, as trade-offs give it.
+    pub fn resolution_name(self, resolution: f64, tolerance: f64) -> String {
+        match self {
+            Self::Nematic => nematic::resolution(resolution, tolerance),
+            _ => rod::resolution(resolution as usize, tolerance),
+        }
+    }
+}
+
+/// By how much the grid of a setting, fitted to the cell of a case, is finer than the coarser one; none where nothing is fitted.
+pub(crate) fn fitted_ratio(system: System, case: &str, coarse: f64, fine: f64) -> Option<f64> {
+    if system != System::Nematic {
+        return None;
+    }
+    Some(nematic::fitted(case, coarse)? / nematic::fitted(case, fine)?)
+}
+
+/// Resolutions and tolerances that wishes choose from, from coarse to fine; each is compared with the one before it.
+pub(crate) fn ladder_of(system: System) -> Vec<(f64, f64)> {
     match system {
-        System::Rod => rod::resolution_of(value),
-        System::Nematic => nematic::resolution_of(value),
-        System::Knots => None,
+        System::Rod => rod::LADDER.iter().map(|&(n, t)| (n as f64, t)).collect(),
+        System::Nematic => nematic::LADDER.to_vec(),
+        System::Knots => Vec::new(),
     }
 }
 

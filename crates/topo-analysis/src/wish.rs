@@ -3,12 +3,17 @@
 
 mod choice;
 mod errors;
+mod holds;
+mod pair;
+mod record;
 mod table;
 
 pub use choice::Grant;
 pub(crate) use choice::{Load, grant};
 pub use errors::{ErrorRow, errors_of_colloids, errors_of_rods};
-pub(crate) use table::Measured;
+pub use holds::{COVERED, CheckRow, check_estimates, factor_of_estimates};
+pub(crate) use pair::Pair;
+pub use record::{Factor, Measured, Record, Stamp, table_hash};
 pub use table::{Point, points};
 
 use std::fmt;

@@ -4,27 +4,39 @@ use crate::data;
 use crate::error::XtaskError;
 use crate::provenance::workspace;
 
-/// Where a generated table begins and ends in a page.
-const MARKS: [&str; 2] = ["<!-- table -->\n", "<!-- end of table -->"];
-
-/// Puts a table into a page of `docs`, in the place of the one before.
+/// Puts the table of a page of `docs` in the place of the one before.
 pub fn record(page: &str, table: &str) -> Result<(), XtaskError> {
+    record_part(page, "table", table)
+}
+
+/// Where a generated part begins and ends in a page.
+fn marks(part: &str) -> [String; 2] {
+    [
+        format!("<!-- {part} -->\n"),
+        format!("<!-- end of {part} -->"),
+    ]
+}
+
+/// Puts a named part of a page of `docs` in the place of the one before.
+pub fn record_part(page: &str, part: &str, table: &str) -> Result<(), XtaskError> {
     let path = workspace().join("docs").join(page);
     let text = std::fs::read_to_string(&path).map_err(|source| XtaskError::File {
         path: path.clone(),
         source,
     })?;
-    let text = replaced(&text, table).ok_or_else(|| {
-        let [begin, end] = MARKS.map(str::trim);
+    let text = replaced(&text, part, table).ok_or_else(|| {
+        let [begin, end] = marks(part);
+        let begin = begin.trim();
         XtaskError::Input(format!("{}: no `{begin}` before `{end}`", path.display()))
     })?;
     data::write(&path, text.as_bytes())
 }
 
-fn replaced(page: &str, table: &str) -> Option<String> {
-    let (before, rest) = page.split_once(MARKS[0])?;
-    let (_, after) = rest.split_once(MARKS[1])?;
-    Some(format!("{before}{}{table}{}{after}", MARKS[0], MARKS[1]))
+fn replaced(page: &str, part: &str, table: &str) -> Option<String> {
+    let [begin, end] = marks(part);
+    let (before, rest) = page.split_once(&begin)?;
+    let (_, after) = rest.split_once(&end)?;
+    Some(format!("{before}{begin}{table}{end}{after}"))
 }
 
 #[cfg(test)]
@@ -35,16 +47,26 @@ mod tests {
     fn only_the_table_changes() {
         let page = "a\n<!-- table -->\nold\n<!-- end of table -->\nb\n";
         let expected = "a\n<!-- table -->\nnew\n<!-- end of table -->\nb\n";
-        assert_eq!(replaced(page, "new\n").as_deref(), Some(expected));
-        assert_eq!(replaced(expected, "new\n").as_deref(), Some(expected));
-        assert_eq!(replaced("no mark", "new\n"), None);
+        assert_eq!(replaced(page, "table", "new\n").as_deref(), Some(expected));
+        assert_eq!(
+            replaced(expected, "table", "new\n").as_deref(),
+            Some(expected)
+        );
+        assert_eq!(replaced("no mark", "table", "new\n"), None);
     }
 
     #[test]
     fn the_pages_have_a_place() {
         for page in ["cost.md", "fuzzing.md", "nematic-model.md"] {
             let text = std::fs::read_to_string(workspace().join("docs").join(page)).unwrap();
-            assert!(replaced(&text, "").is_some(), "{page}");
+            assert!(replaced(&text, "table", "").is_some(), "{page}");
+        }
+        let page = std::fs::read_to_string(workspace().join("docs/tradeoff.md")).unwrap();
+        for system in ["rod", "nematic"] {
+            for part in ["settings", "check"] {
+                let part = format!("{system} {part}");
+                assert!(replaced(&page, &part, "").is_some(), "{part}");
+            }
         }
     }
 }

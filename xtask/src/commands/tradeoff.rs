@@ -1,5 +1,7 @@
 //! `cargo xtask tradeoff`: speed against accuracy, as tables, figures and a report.
 
+mod sets;
+
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, OnceLock};
 use std::time::{Duration, Instant};
@@ -8,22 +10,18 @@ use super::threads;
 use crate::cli::{SystemsArgs, TradeoffArgs};
 use crate::error::XtaskError;
 use crate::progress::Progress;
-use crate::provenance::workspace;
 use crate::{data, interrupt};
 use topo_analysis::{
-    AnalysisError, System, TradeoffEvent, TradeoffRun, TradeoffWork, compared, held_back, points,
-    read_table, tradeoff, with_jobs, writable, write_table,
+    AnalysisError, Effort, System, TradeoffEvent, TradeoffRun, TradeoffWork, compared, read_table,
+    tradeoff, with_jobs, writable, write_table,
 };
 use topo_core::Interrupt;
 
 /// Changes with whatever changes the numbers of a run.
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 
 /// Time between two writings of what is finished.
 const KEEP: Duration = Duration::from_secs(10);
-
-/// The tables that scenes by wish take their settings from, below the workspace.
-const TABLES: &str = "crates/topo-analysis/data";
 
 pub fn run(args: &TradeoffArgs) -> Result<(), XtaskError> {
     let work = &args.systems.work;
@@ -34,10 +32,9 @@ pub fn run(args: &TradeoffArgs) -> Result<(), XtaskError> {
         path: folder.clone(),
         source,
     })?;
-    if args.held_back {
-        check_estimates(&args.systems, &folder)
-    } else {
-        measure_all(args, &folder)
+    match args.set.as_deref() {
+        None => measure_all(args, &folder),
+        Some(name) => sets::measure_set(args, name, &folder),
     }
 }
 
@@ -48,10 +45,17 @@ fn measure_all(args: &TradeoffArgs, folder: &Path) -> Result<(), XtaskError> {
         ..
     } = args;
     let effort = super::effort(args.quality)?;
+    if *record && effort != Effort::Standard {
+        return Err(XtaskError::Argument {
+            key: "--record",
+            value: args.quality.to_string(),
+            remedy: "tables are measured with --quality standard".to_owned(),
+        });
+    }
     let stop = interrupt::install();
     let mut tables = Vec::new();
     for system in System::ALL {
-        if !args.only.is_empty() && !args.only.iter().any(|name| name == system.name()) {
+        if !args.takes(system) {
             continue;
         }
         let start = Instant::now();
@@ -68,13 +72,8 @@ fn measure_all(args: &TradeoffArgs, folder: &Path) -> Result<(), XtaskError> {
             let path = folder.join(format!("{}.{extension}", system.name()));
             data::write(&path, bytes)?;
         }
-        let points = points(system, &rows);
-        if *record && !points.is_empty() {
-            let path = workspace()
-                .join(TABLES)
-                .join(format!("tradeoff-{}.csv", system.name()));
-            write_table(&path, &points)?;
-            println!("recorded: {}", path.display());
+        if *record {
+            sets::record_table(system, &rows)?;
         }
         println!(
             "{}: {} rows in {:.0} s",
@@ -88,28 +87,6 @@ fn measure_all(args: &TradeoffArgs, folder: &Path) -> Result<(), XtaskError> {
     let path = folder.join("tradeoff.md");
     data::write(&path, report.as_bytes())?;
     println!("report: {}", path.display());
-    Ok(())
-}
-
-/// Runs by wish on cases held back from the table: how often and how well their estimates cover the error.
-fn check_estimates(args: &SystemsArgs, folder: &Path) -> Result<(), XtaskError> {
-    let stop = interrupt::install();
-    let kept = kept(folder, "held-back");
-    let rows = Mutex::new(Vec::new());
-    let runs = measure("held back", args, &kept, &stop, |work| {
-        let (runs, found) = held_back(work)?;
-        if let Ok(mut rows) = rows.lock() {
-            *rows = found;
-        }
-        Ok(runs)
-    })?;
-    write_table(&kept, &runs)?;
-    interrupt::check(&stop)?;
-    let rows = rows.into_inner().unwrap_or_default();
-    write_table(&folder.join("held-back.csv"), &rows)?;
-    let report = crate::tradeoff::held_back_report(&rows);
-    data::write(&folder.join("held-back.md"), report.as_bytes())?;
-    println!("{report}");
     Ok(())
 }
 

@@ -9,6 +9,9 @@ use topo_analysis::{ErrorRow, Grant, Wish, median, quantile, write_table};
 /// Tells which setting grants a wish; `unit` is what its resolution counts.
 pub fn tell_grant(grant: &Grant, unit: &str) {
     let p = &grant.point;
+    if let Some(reason) = &grant.stale {
+        eprintln!("warning: {reason}");
+    }
     eprintln!(
         "{}: {} {unit}, tolerance {:e}; measured on {} cases: off by {:.2} % (median), {:.2} % (90th percentile); {} of one processor",
         grant.wish,
@@ -28,7 +31,7 @@ pub fn tell_errors(grant: &Grant, rows: &[ErrorRow], folder: &Path) -> Result<()
     println!("estimated errors:");
     for r in rows {
         let time = r
-            .result
+            .value()
             .map_or_else(|| "not reached".to_owned(), |t| format!("{t:.4}"));
         let error = r
             .relative_error

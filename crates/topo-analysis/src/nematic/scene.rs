@@ -114,7 +114,7 @@ impl NematicScene {
 
     fn at(&self, spacing: f64, tolerance: f64) -> Self {
         let mut scene = self.clone();
-        scene.nematic.spacing = spacing;
+        fit(&mut scene.nematic, spacing);
         scene.accuracy.tolerance = tolerance;
         scene
     }
@@ -181,6 +181,33 @@ impl NematicScene {
     }
 }
 
+/// Most that a fitted grid is finer than asked for.
+const FINER: f64 = 0.12;
+/// Sides that miss the cell by less than this share are met.
+const MET: f64 = 2e-3;
+
+/// Gives `nematic` a grid of at most this spacing, such that its plates are as far apart as it says and its sides nearly.
+///
+/// A cell is rounded to whole spacings otherwise, and late times go with the square of the distance between the plates: two
+/// grids would differ by the rounding, not by their error.
+pub(crate) fn fit(nematic: &mut NematicParameters, spacing: f64) {
+    if let Some(cells) = nematic.cells.take() {
+        nematic.cell = cells.map(|n| n as f64 * nematic.spacing / nematic.radius);
+    }
+    let half = nematic.cell.map(|edge| 0.5 * edge * nematic.radius);
+    let least = (half[2] / spacing - 1e-9).ceil().max(1.0);
+    let most = (least * (1.0 + FINER)).floor() as usize;
+    let missed = |n: usize| {
+        let h = half[2] / n as f64;
+        let of = |x: f64| ((x / h).round() * h / x - 1.0).abs();
+        of(half[0]).max(of(half[1]))
+    };
+    let all = || least as usize..=most;
+    let best = all().map(missed).fold(f64::INFINITY, f64::min);
+    let n = all().find(|&n| missed(n) <= best.max(MET)).unwrap_or(most);
+    nematic.spacing = half[2] / n as f64;
+}
+
 #[cfg(test)]
 mod tests {
     use topo_nematic::NematicBattery;
@@ -196,5 +223,45 @@ mod tests {
                 assert!(battery.warnings().is_empty(), "{:?}", battery.warnings());
             }
         }
+    }
+
+    #[test]
+    fn grids_of_wishes_keep_the_plates_apart() {
+        for radius in [10.0, 15.0, 17.0] {
+            for spacing in [2.0, 1.5, 1.2, 1.0] {
+                let mut nematic = NematicParameters {
+                    radius,
+                    ..NematicParameters::default()
+                };
+                let cell = nematic.cell.map(|edge| edge * radius);
+                fit(&mut nematic, spacing);
+                let h = nematic.spacing;
+                assert!(
+                    h <= spacing * (1.0 + 1e-9) && h > 0.85 * spacing,
+                    "{h} for {spacing}"
+                );
+                let battery = NematicBattery::new(&nematic, &NematicAccuracy::default()).unwrap();
+                let edges = battery.grid().extent();
+                assert!(
+                    (edges[2] / cell[2] - 1.0).abs() < 1e-12,
+                    "{edges:?}, not {cell:?}"
+                );
+                let missed = (edges[0] / cell[0] - 1.0).abs();
+                assert!(
+                    missed < 0.025,
+                    "sides miss by {missed} at R = {radius}, h = {spacing}"
+                );
+            }
+        }
+        // a cell given in numbers of cells keeps its size
+        let mut nematic = NematicParameters {
+            radius: 10.0,
+            spacing: 1.5,
+            cells: Some([40, 40, 30]),
+            ..NematicParameters::default()
+        };
+        fit(&mut nematic, 1.0);
+        assert_eq!((nematic.spacing, nematic.cells), (22.5 / 23.0, None));
+        assert_eq!(nematic.cell, [6.0, 6.0, 4.5]);
     }
 }

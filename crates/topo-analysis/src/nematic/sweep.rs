@@ -14,7 +14,7 @@ use crate::cost::{Cost, Estimate, Speed, Stopwatch, estimate, threads};
 use crate::folder::{Earlier, finished, tell_replaced, writable};
 use crate::progress::{Event, SweepSettings, with_jobs};
 use crate::table::write_table;
-use crate::tradeoff::{MEASURED_CELL, MEASURED_RADIUS};
+use crate::tradeoff::MEASURED;
 
 /// Cases that hold more than this each run one after another, all threads in each.
 const BIG_CASE: u64 = 1 << 30;
@@ -247,11 +247,11 @@ fn case_cost(case: &NematicCase, battery: &NematicBattery) -> Cost {
 /// Cost of all cases of a scene, in units of the middle one that accuracy was measured on, whatever the spacing.
 pub(super) fn weight(scene: &NematicScene) -> Result<f64, AnalysisError> {
     let measured = NematicCase {
-        q: 5,
+        q: MEASURED.q.unsigned_abs(),
         nematic: NematicParameters {
-            radius: MEASURED_RADIUS,
+            radius: MEASURED.radius,
             spacing: scene.nematic.spacing,
-            cell: MEASURED_CELL,
+            cell: MEASURED.cell,
             ..NematicParameters::default()
         },
         flow: None,

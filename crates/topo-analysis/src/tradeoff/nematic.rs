@@ -7,16 +7,17 @@ use topo_nematic::{
     SwitchSettings, SwitchTarget,
 };
 
-use super::{Outcome, Quantities, REFERENCE, Trial};
-use crate::nematic::NEMATIC_SHARES;
-use crate::system::Effort;
+use super::sets::{CaseSet, Colloid, colloids};
+use super::{Outcome, Quantities, REFERENCE, TradeoffRun, Trial};
+use crate::nematic::{NEMATIC_SHARES, fit};
+use crate::system::System;
 use crate::times::DischargeTimes;
-use crate::wish::Point;
+use crate::wish::Pair;
 
 /// Radius of the particle, and edges of the cell: multiples of every spacing, so that the cell is the same on all grids.
-pub(crate) const MEASURED_RADIUS: f64 = 15.0;
+const RADIUS: f64 = 15.0;
 /// Edges of the cell in radii.
-pub(crate) const MEASURED_CELL: [f64; 3] = [5.6, 5.6, 4.0];
+const CELL: [f64; 3] = [5.6, 5.6, 4.0];
 /// Spacings and tolerances of the numerical settings.
 const SPACINGS: [f64; 4] = [2.0, 1.5, 1.2, 1.0];
 const TOLERANCES: [f64; 3] = [1e-3, 1e-4, 3e-5];
@@ -25,6 +26,8 @@ const REFERENCE_SPACING: f64 = 0.75;
 const REFERENCE_TOLERANCE: f64 = 1e-5;
 /// Rings that buckle at this radius, where late times hang on how far: told apart from the rest.
 const BUCKLED: [i32; 1] = [11];
+/// Charges followed with flow.
+const FLOWING: [i32; 1] = [5];
 /// Spacing at which tolerance, storage and flow are compared on their own, and the tolerance of their references.
 const MIDDLE_SPACING: f64 = 1.5;
 const FINEST_TOLERANCE: f64 = 1e-6;
@@ -37,8 +40,7 @@ const QUANTITIES: [&str; 4] = ["F", "order parameter", "t50", "t99.9"];
 /// One run.
 #[derive(Debug, Clone)]
 struct Run {
-    radius: f64,
-    q: i32,
+    colloid: Colloid,
     spacing: f64,
     boundary: Boundary,
     free: FreeSurface,
@@ -48,8 +50,11 @@ struct Run {
 
 fn run(q: i32, spacing: f64, tolerance: f64) -> Run {
     Run {
-        radius: MEASURED_RADIUS,
-        q,
+        colloid: Colloid {
+            radius: RADIUS,
+            q,
+            cell: CELL,
+        },
         spacing,
         boundary: Boundary::default(),
         free: FreeSurface::default(),
@@ -63,14 +68,14 @@ fn run(q: i32, spacing: f64, tolerance: f64) -> Run {
 
 impl Run {
     fn go(&self, interrupt: &Interrupt) -> Result<(Quantities, u64), NematicError> {
-        let parameters = NematicParameters {
-            radius: self.radius,
-            spacing: self.spacing,
-            cell: MEASURED_CELL,
-            pattern: SurfacePattern::Charge(self.q),
+        let mut parameters = NematicParameters {
+            radius: self.colloid.radius,
+            cell: self.colloid.cell,
+            pattern: SurfacePattern::Charge(self.colloid.q),
             boundary: self.boundary,
             ..NematicParameters::default()
         };
+        fit(&mut parameters, self.spacing);
         let battery = NematicBattery::new(&parameters, &self.accuracy)?;
         let charged = battery.charge(&ChargeSettings::default(), &mut RunHooks::new(interrupt))?;
         let released = charged.switch(&SwitchSettings {
@@ -111,20 +116,11 @@ pub(super) fn resolution(spacing: f64, tolerance: f64) -> String {
     format!("h = {spacing}, {tolerance:e}")
 }
 
-/// Spacing and tolerance of a resolution by its name.
-pub(super) fn resolution_of(name: &str) -> Option<(f64, f64)> {
-    let (spacing, tolerance) = name.strip_prefix("h = ")?.split_once(", ")?;
-    Some((spacing.parse().ok()?, tolerance.parse().ok()?))
-}
-
 /// All runs, references first.
-pub(super) fn trials(effort: Effort) -> Vec<Trial> {
-    let charges: &[i32] = match effort {
-        Effort::Draft => &[2, 5, 8],
-        Effort::Standard => &[1, 2, 3, 4, 5, 6, 7, 8],
-    };
+pub(super) fn trials() -> Vec<Trial> {
+    let charges = [2, 5, 8];
     let mut all: Vec<(String, &'static str, String, Run)> = Vec::new();
-    for &q in charges {
+    for q in charges {
         let mut put =
             |setting, value: String, run| all.push((format!("q = {q}"), setting, value, run));
         let name = resolution;
@@ -174,7 +170,7 @@ pub(super) fn trials(effort: Effort) -> Vec<Trial> {
         }
     }
     // the error in time alone, on one grid
-    for &q in charges {
+    for q in charges {
         let mut put = |setting, value: String, run| {
             all.push((
                 format!("q = {q}, h = {MIDDLE_SPACING}"),
@@ -198,11 +194,7 @@ pub(super) fn trials(effort: Effort) -> Vec<Trial> {
             at(TOLERANCES[2]),
         );
     }
-    let flowing: &[i32] = match effort {
-        Effort::Draft => &[5],
-        Effort::Standard => &[2, 5, 8],
-    };
-    for &q in flowing {
+    for q in FLOWING {
         let mut put = |setting, value: String, tolerance: f64, residual: Option<f64>| {
             let mut run = run(q, MIDDLE_SPACING, tolerance);
             run.flow = residual.map(|boundary_residual| FlowParameters {
@@ -260,37 +252,72 @@ fn trial((case, setting, value, run): (String, &'static str, String, Run)) -> Tr
     }
 }
 
-/// Radii and charges that no setting was measured on; all below the buckling of their rings.
-pub(super) fn held_back_cases() -> Vec<(f64, i32)> {
-    let small = [1, 2, 3, 4, 5, 6, 7, 8].map(|q| (13.0, q));
-    let large = [4, 7].map(|q| (17.0, q));
-    small.into_iter().chain(large).collect()
-}
+/// What wishes choose from, from coarse to fine; each is compared with the one before it, so that the first is none of them.
+pub(super) const LADDER: [(f64, f64); 4] = [(2.0, 1e-4), (1.5, 1e-4), (1.2, 1e-4), (1.0, 1e-4)];
+/// Finer grids, which give the reference.
+const FINEST: [(f64, f64); 2] = [(0.75, 3e-5), (0.6, 3e-5)];
+/// Their setting.
+const FINEST_GRIDS: &str = "finest grids";
 
-/// Name of such a case.
-pub(super) fn case_name((radius, q): &(f64, i32)) -> String {
-    format!("R = {radius}, q = {q}")
-}
-
-/// Runs of held-back cases: the reference, and the settings of each with their coarser ones.
-pub(super) fn held_back_trials(cases: &[(f64, i32)], points: &[Point]) -> Vec<Trial> {
+/// The ladder and the finest grid on the cases of a set, case by case.
+pub(super) fn ladder_trials(set: CaseSet) -> Vec<Trial> {
     let mut all = Vec::new();
-    for (case, p) in cases.iter().zip(points) {
-        let mut put = |setting, spacing, tolerance| {
-            let mut run = run(case.1, spacing, tolerance);
-            run.radius = case.0;
-            all.push((
-                case_name(case),
-                setting,
-                resolution(spacing, tolerance),
-                run,
-            ));
-        };
-        put(REFERENCE, REFERENCE_SPACING, REFERENCE_TOLERANCE);
-        put("resolution", p.resolution, p.tolerance);
-        put("resolution", p.check_resolution, p.check_tolerance);
+    let settings = || {
+        let ladder = LADDER.into_iter().map(|at| ("resolution", at));
+        ladder.chain(FINEST.map(|at| (FINEST_GRIDS, at)))
+    };
+    for colloid in colloids(set) {
+        for (setting, (spacing, tolerance)) in settings() {
+            let run = Run {
+                colloid,
+                ..run(colloid.q, spacing, tolerance)
+            };
+            all.push((colloid.name(), setting, resolution(spacing, tolerance), run));
+        }
     }
     all.into_iter().map(trial).collect()
+}
+
+/// The spacing of a case's grid, fitted to its cell; none for a case of no set.
+pub(super) fn fitted(case: &str, spacing: f64) -> Option<f64> {
+    let all = CaseSet::ALL.into_iter().flat_map(colloids);
+    let of = all.into_iter().find(|c| c.name() == case)?;
+    let mut parameters = NematicParameters {
+        radius: of.radius,
+        cell: of.cell,
+        ..NematicParameters::default()
+    };
+    fit(&mut parameters, spacing);
+    Some(parameters.spacing)
+}
+
+/// Runs of the ladder with the references of their cases: what the two finest grids extrapolate to.
+///
+/// # Validation
+/// `references_are_those_of_the_two_finest_grids`, `long_extrapolated_references_hold`
+pub(super) fn with_references(mut runs: Vec<TradeoffRun>) -> Vec<TradeoffRun> {
+    let [coarse, fine] = FINEST.map(|(spacing, tolerance)| resolution(spacing, tolerance));
+    let of = |run: &TradeoffRun| {
+        let beside = runs
+            .iter()
+            .find(|r| r.case == run.case && r.quantity == run.quantity && r.value == coarse);
+        let [a, b] = FINEST.map(|(spacing, _)| fitted(&run.case, spacing));
+        let pair = Pair::of(System::Nematic, run.result, beside?.result, a? / b?);
+        Some(TradeoffRun {
+            setting: REFERENCE.to_owned(),
+            value: format!("h = {} and {}, extrapolated", FINEST[0].0, FINEST[1].0),
+            // without both there is none
+            result: pair.told.and(pair.value),
+            ..run.clone()
+        })
+    };
+    let found: Vec<TradeoffRun> = runs
+        .iter()
+        .filter(|r| r.value == fine)
+        .filter_map(of)
+        .collect();
+    runs.extend(found);
+    runs
 }
 
 #[cfg(test)]
@@ -303,26 +330,81 @@ mod tests {
             .into_iter()
             .chain([REFERENCE_SPACING, MIDDLE_SPACING])
         {
-            for edge in MEASURED_CELL {
-                let half = 0.5 * edge * MEASURED_RADIUS / spacing;
+            for edge in CELL {
+                let half = 0.5 * edge * RADIUS / spacing;
                 assert!((half - half.round()).abs() < 1e-9, "{edge} by {spacing}");
             }
         }
     }
 
     #[test]
+    fn references_are_those_of_the_two_finest_grids() {
+        let case = colloids(CaseSet::Check)[0].name();
+        let time = |spacing| {
+            let h: f64 = fitted(&case, spacing).unwrap();
+            assert!(h < spacing + 1e-9, "a fitted grid is finer");
+            7.0 + 0.3 * h * h
+        };
+        let mut runs = Vec::new();
+        for (spacing, tolerance) in LADDER.into_iter().chain(FINEST) {
+            runs.push(TradeoffRun {
+                case: case.clone(),
+                setting: "any".to_owned(),
+                value: resolution(spacing, tolerance),
+                quantity: "t99.9".to_owned(),
+                result: Some(time(spacing)),
+                cpu_seconds: 1.0,
+                peak_bytes: 1,
+            });
+        }
+        let all = with_references(runs.clone());
+        assert_eq!(all.len(), runs.len() + 1);
+        let reference = &all[runs.len()];
+        assert_eq!(reference.setting, REFERENCE);
+        assert!((reference.result.unwrap() - 7.0).abs() < 1e-12);
+        runs[LADDER.len()].result = None;
+        let n = runs.len();
+        assert_eq!(with_references(runs)[n].result, None);
+    }
+
+    #[test]
+    #[ignore = "long: 15 CPU seconds"]
+    fn long_extrapolated_references_hold() {
+        // what the grids of the reference extrapolate to, beside what a finer one does
+        let run_at = |spacing| {
+            let colloid = colloids(CaseSet::Table)[1];
+            let run = Run {
+                colloid,
+                ..run(colloid.q, spacing, 3e-5)
+            };
+            let (found, _) = run.go(&Interrupt::new()).unwrap();
+            found[3].1
+        };
+        let [a, b, c] = [0.75, 0.6, 0.5].map(run_at);
+        let of = |fine, coarse, ratio| {
+            Pair::of(System::Nematic, fine, coarse, ratio)
+                .value
+                .unwrap()
+        };
+        let (reference, finer) = (of(b, a, 0.75 / 0.6), of(c, b, 0.6 / 0.5));
+        println!("{a:?} {b:?} {c:?}: {reference} {finer}");
+        assert!(
+            (reference / finer - 1.0).abs() < 1e-3,
+            "{reference} {finer}"
+        );
+    }
+
+    #[test]
     fn every_case_has_one_reference_and_no_run_is_there_twice() {
-        for effort in [Effort::Draft, Effort::Standard] {
-            let trials = trials(effort);
-            for (k, t) in trials.iter().enumerate() {
-                assert!(
-                    !trials[..k].iter().any(|o| o.name() == t.name()),
-                    "{}",
-                    t.name()
-                );
-                let of_case = trials.iter().filter(|o| o.case == t.case);
-                assert_eq!(of_case.filter(|o| o.setting == REFERENCE).count(), 1);
-            }
+        let trials = trials();
+        for (k, t) in trials.iter().enumerate() {
+            assert!(
+                !trials[..k].iter().any(|o| o.name() == t.name()),
+                "{}",
+                t.name()
+            );
+            let of_case = trials.iter().filter(|o| o.case == t.case);
+            assert_eq!(of_case.filter(|o| o.setting == REFERENCE).count(), 1);
         }
     }
 }

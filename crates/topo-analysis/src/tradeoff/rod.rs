@@ -6,15 +6,13 @@ use topo_core::{GAMMA_L_STABLE_LARGE, GAMMA_L_STABLE_SMALL, Interrupt};
 use topo_knots::KnotTable;
 use topo_rod::{CutSite, IntegratorKind, Reading};
 
+use super::sets::{CaseSet, rods};
 use super::{Outcome, TradeoffWork, Trial};
 use crate::AnalysisError;
 use crate::elastic::{
-    ACCURACY_CASES, CaseJob, ElasticScene, MeasuredDischarge, Preset, exact_discharge,
-    measured_discharge,
+    CaseJob, ElasticScene, MeasuredDischarge, Preset, exact_discharge, measured_discharge,
 };
 use crate::knots::{Shapes, tight_shapes};
-use crate::system::Effort;
-use crate::wish::Point;
 
 /// Cases of a draft: knots of all sizes, twisted and not, and the unknot, whose discharge is known in closed form.
 const DRAFT_CASES: [(&str, f64); 9] = [
@@ -32,18 +30,21 @@ const DRAFT_CASES: [(&str, f64); 9] = [
 /// Edges and tolerances of the numerical settings.
 const EDGES: [usize; 4] = [64, 100, 140, 200];
 const TOLERANCES: [f64; 5] = [1e-2, 4e-3, 2e-3, 1e-3, 5e-4];
-/// Rods and tolerances too fine for a draft.
-const FINE: [(usize, f64); 5] = [
+/// What wishes choose from, from coarse to fine; each is compared with the one before it, so that the first is none of them.
+///
+/// The error is that of the edges: tolerances are as loose as leaves it so.
+pub(super) const LADDER: [(usize, f64); 6] = [
+    (70, 4e-3),
+    (100, 4e-3),
+    (140, 4e-3),
+    (200, 2e-3),
     (280, 1e-3),
-    (280, 5e-4),
-    (400, 1e-3),
     (400, 5e-4),
-    (400, 2e-4),
 ];
 
-/// Edges and tolerance of the references.
+/// Edges of the references: of a draft, and of the ladder.
 const DRAFT_REFERENCE: usize = 400;
-const REFERENCE: usize = 600;
+const REFERENCE: usize = 560;
 
 /// Where integrators are compared, and models.
 const MIDDLE_EDGES: usize = 140;
@@ -55,13 +56,6 @@ const EXPLICIT_STEPS: u64 = 200_000;
 /// Name of a resolution.
 pub(super) fn resolution(n_edges: usize, tolerance: f64) -> String {
     format!("N = {n_edges}, {tolerance:e} h")
-}
-
-/// Edges and tolerance of a resolution by its name.
-pub(super) fn resolution_of(name: &str) -> Option<(f64, f64)> {
-    let (edges, tolerance) = name.strip_prefix("N = ")?.split_once(", ")?;
-    let tolerance = tolerance.strip_suffix(" h")?;
-    Some((edges.parse().ok()?, tolerance.parse().ok()?))
 }
 
 fn base() -> ElasticScene {
@@ -84,27 +78,27 @@ fn reference(n_edges: usize) -> ElasticScene {
 }
 
 /// Settings with their names, the reference first.
-fn settings(effort: Effort) -> Vec<(&'static str, String, ElasticScene)> {
-    let n_reference = match effort {
-        Effort::Draft => DRAFT_REFERENCE,
-        Effort::Standard => REFERENCE,
-    };
+fn resolutions(
+    n_reference: usize,
+    grid: impl IntoIterator<Item = (usize, f64)>,
+) -> Vec<(&'static str, String, ElasticScene)> {
+    let tolerance = Preset::Reference.tolerance();
     let mut all = vec![(
         super::REFERENCE,
-        resolution(n_reference, Preset::Reference.tolerance()),
+        resolution(n_reference, tolerance),
         reference(n_reference),
     )];
-    let mut grid: Vec<(usize, f64)> = Vec::new();
-    for n_edges in EDGES {
-        grid.extend(TOLERANCES.map(|tolerance| (n_edges, tolerance)));
-    }
-    if effort == Effort::Standard {
-        grid.extend(FINE);
-    }
     for (n_edges, tolerance) in grid {
         let scene = with(n_edges, tolerance, |_| {});
         all.push(("resolution", resolution(n_edges, tolerance), scene));
     }
+    all
+}
+
+/// Every setting of a draft.
+fn settings() -> Vec<(&'static str, String, ElasticScene)> {
+    let grid = EDGES.map(|n| TOLERANCES.map(|tolerance| (n, tolerance)));
+    let mut all = resolutions(DRAFT_REFERENCE, grid.concat());
     let (n, tolerance) = (MIDDLE_EDGES, MIDDLE_TOLERANCE);
     for (name, integrator, gamma, reuse) in [
         (
@@ -166,57 +160,31 @@ struct Case {
     site: OnceLock<Option<f64>>,
 }
 
-/// All runs, references first.
-pub(super) fn trials(effort: Effort, work: &TradeoffWork<'_>) -> Result<Vec<Trial>, AnalysisError> {
-    let cases = match effort {
-        Effort::Draft => DRAFT_CASES.to_vec(),
-        // every second one: twisted and untwisted knots of all sizes
-        Effort::Standard => ACCURACY_CASES.iter().step_by(2).copied().collect(),
-    };
-    let chosen: Vec<(String, f64)> = cases.iter().map(|c| (c.0.to_owned(), c.1)).collect();
-    let starts = Starts::of(&chosen, work)?;
-    let mut trials = Vec::new();
-    for (setting, value, scene) in settings(effort) {
-        for k in 0..chosen.len() {
-            trials.push(starts.trial(k, setting, value.clone(), scene.clone()));
-        }
-    }
-    Ok(trials)
+/// All runs of a draft, references first.
+pub(super) fn trials(work: &TradeoffWork<'_>) -> Result<Vec<Trial>, AnalysisError> {
+    let chosen = DRAFT_CASES.map(|c| (c.0.to_owned(), c.1));
+    of_cases(&chosen, &settings(), work)
 }
 
-/// Cases of the published sweep that no setting was measured on, spread over knots and twists.
-pub(super) fn held_back_cases() -> Result<Vec<(String, f64)>, AnalysisError> {
-    let scene = base();
-    let all = scene.cases(&KnotTable::builtin())?;
-    let left = all.into_iter().filter_map(|case| {
-        let twist = case.rod.twist?;
-        let is_used = |c: &(&str, f64)| *c == (case.knot.as_str(), twist);
-        (!ACCURACY_CASES.iter().any(is_used)).then_some((case.knot, twist))
-    });
-    Ok(left.skip(1).step_by(EVERY_HELD_BACK).collect())
-}
-
-/// Of the cases left, each so-many-th is held back; the factor of safety of the estimates was set on those before.
-const EVERY_HELD_BACK: usize = 3;
-
-/// Runs of held-back cases: the reference, and the settings of each with their coarser ones.
-pub(super) fn held_back_trials(
-    cases: &[(String, f64)],
-    points: &[Point],
+/// The ladder on the cases of a set, case by case.
+pub(super) fn ladder_trials(
+    set: CaseSet,
     work: &TradeoffWork<'_>,
 ) -> Result<Vec<Trial>, AnalysisError> {
-    let starts = Starts::of(cases, work)?;
+    let settings = resolutions(REFERENCE, LADDER);
+    of_cases(&rods(set)?, &settings, work)
+}
+
+fn of_cases(
+    chosen: &[(String, f64)],
+    settings: &[(&'static str, String, ElasticScene)],
+    work: &TradeoffWork<'_>,
+) -> Result<Vec<Trial>, AnalysisError> {
+    let starts = Starts::of(chosen, work)?;
     let mut trials = Vec::new();
-    for (k, p) in points.iter().enumerate() {
-        let name = resolution(DRAFT_REFERENCE, Preset::Reference.tolerance());
-        trials.push(starts.trial(k, super::REFERENCE, name, reference(DRAFT_REFERENCE)));
-        for (edges, tolerance) in [
-            (p.resolution, p.tolerance),
-            (p.check_resolution, p.check_tolerance),
-        ] {
-            let edges = edges as usize;
-            let scene = with(edges, tolerance, |_| {});
-            trials.push(starts.trial(k, "resolution", resolution(edges, tolerance), scene));
+    for k in 0..chosen.len() {
+        for (setting, value, scene) in settings {
+            trials.push(starts.trial(k, setting, value.clone(), scene.clone()));
         }
     }
     Ok(trials)
@@ -325,25 +293,17 @@ mod tests {
     use super::*;
 
     #[test]
-    fn at_least_sixty_cases_are_held_back_from_the_table() {
-        let held_back = held_back_cases().unwrap();
-        assert!(held_back.len() >= 60, "{}", held_back.len());
-        for (knot, twist) in &held_back {
-            assert!(!ACCURACY_CASES.contains(&(knot.as_str(), *twist)));
-        }
-        let knots: std::collections::BTreeSet<_> = held_back.iter().map(|c| &c.0).collect();
-        assert_eq!(knots.len(), 14);
-    }
-
-    #[test]
     fn settings_have_names_of_their_own_and_the_presets_are_among_them() {
-        let all = settings(Effort::Standard);
-        for (k, (setting, value, scene)) in all.iter().enumerate() {
+        let mut all = settings();
+        for (k, (setting, value, _)) in all.iter().enumerate() {
             let same = all[..k].iter().find(|s| s.0 == *setting && s.1 == *value);
             assert!(same.is_none(), "{setting} {value} is there twice");
+        }
+        all.extend(resolutions(REFERENCE, LADDER));
+        for (_, _, scene) in &all {
             scene.accuracy.checked().unwrap();
         }
-        for preset in [Preset::Draft, Preset::Standard, Preset::Paper] {
+        for preset in [Preset::Draft, Preset::Standard] {
             let scene = ElasticScene::published(preset);
             let found = all.iter().any(|(setting, _, s)| {
                 *setting == "resolution"

@@ -3,19 +3,36 @@
 use serde::Serialize;
 
 use super::Wish;
-use super::table::{Measured, Point};
+use super::pair::Pair;
+use super::record::Measured;
+use super::table::Point;
 use crate::cost::EFFICIENCY;
 
 /// A wish with the setting that grants it.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Grant {
     /// What was asked for.
     pub wish: Wish,
     /// The setting and what was measured of it.
     pub point: Point,
+    /// Factor of the estimates.
+    pub scale: f64,
+    /// Why the table does not speak of the present code, if it does not.
+    pub stale: Option<String>,
     /// Processor seconds expected, the runs included that tell the error.
     pub cpu_seconds: f64,
 }
+
+impl Grant {
+    /// Estimate of the relative error of a pair of runs; without a coarser run nothing is known, and it is one.
+    pub(super) fn estimate(&self, pair: &Pair) -> f64 {
+        let raw = self.point.raw_estimate(pair);
+        raw.map_or(1.0, |raw| self.scale * raw)
+    }
+}
+
+/// Estimates without a recorded factor: what is doubled is seldom too small.
+const UNKNOWN_SCALE: f64 = 2.0;
 
 /// What the cases of a scene cost, in units of the cases that the table was measured on.
 #[derive(Debug, Clone, Copy)]
@@ -34,20 +51,27 @@ pub(crate) struct Load {
 /// # Validation
 /// `the_cheapest_that_is_good_enough`, `the_best_that_is_cheap_enough`
 pub(crate) fn grant(table: Measured, wish: Wish, load: Load) -> Result<Grant, String> {
-    choose(&table.points(), wish, load)
+    let factor = table.record().and_then(|r| r.factor);
+    let scale = factor.map_or(UNKNOWN_SCALE, |f| f.scale);
+    let granted = choose(&table.points(), scale, wish, load)?;
+    Ok(Grant {
+        stale: table.stale(),
+        ..granted
+    })
 }
 
-fn choose(points: &[Point], wish: Wish, load: Load) -> Result<Grant, String> {
-    let seconds = |p: &Point| {
-        let check = points
-            .iter()
-            .find(|o| (o.resolution, o.tolerance) == (p.check_resolution, p.check_tolerance));
-        // the coarsest are in the table as checks only: they cost less than half
-        load.cases * (p.cpu_seconds + check.map_or(0.5 * p.cpu_seconds, |c| c.cpu_seconds))
-    };
+pub(super) fn choose(
+    points: &[Point],
+    scale: f64,
+    wish: Wish,
+    load: Load,
+) -> Result<Grant, String> {
+    let seconds = |p: &Point| load.cases * p.cpu_seconds;
     let granted = |p: &Point| Grant {
         wish,
         point: *p,
+        scale,
+        stale: None,
         cpu_seconds: seconds(p),
     };
     match wish {
@@ -56,8 +80,10 @@ fn choose(points: &[Point], wish: Wish, load: Load) -> Result<Grant, String> {
             let cheapest = good.min_by(|a, b| seconds(a).total_cmp(&seconds(b)));
             cheapest.map(granted).ok_or_else(|| {
                 let best = points.iter().map(|p| p.high_error).fold(1.0, f64::min);
+                // rounded up, so that what is told can be asked for
+                let best = (best * 1e4).ceil() / 1e4;
                 format!(
-                    "the most accurate setting measured is off by {best:.1e} in a tenth of the cases: ask for that at most, or give settings in a table [accuracy]"
+                    "the most accurate setting measured is off by up to {best} in nine cases of ten: ask for accuracy = {best} or more, or give settings in a table [accuracy]"
                 )
             })
         }
@@ -67,7 +93,7 @@ fn choose(points: &[Point], wish: Wish, load: Load) -> Result<Grant, String> {
             let best = cheap.min_by(|a, b| a.high_error.total_cmp(&b.high_error));
             best.map(granted).ok_or_else(|| {
                 let least = points.iter().map(seconds).fold(f64::INFINITY, f64::min);
-                let least = least / (load.threads as f64 * EFFICIENCY);
+                let least = (least / (load.threads as f64 * EFFICIENCY)).ceil();
                 format!("the cheapest setting measured takes about {least:.0} s: give as much, or ask for fewer cases")
             })
         }
@@ -88,7 +114,6 @@ mod tests {
             peak_bytes: 1,
             check_resolution: 0.5 * resolution,
             check_tolerance: 1e-3,
-            scale: 1.0,
             n_cases: 9,
         }
     }
@@ -108,25 +133,42 @@ mod tests {
 
     #[test]
     fn the_cheapest_that_is_good_enough() {
-        let of = |error| choose(&table(), Wish::Accuracy(error), LOAD);
+        let of = |error| choose(&table(), 1.5, Wish::Accuracy(error), LOAD);
         assert_eq!(of(0.1).unwrap().point.resolution, 100.0);
         assert_eq!(of(0.05).unwrap().point.resolution, 200.0);
         let fine = of(0.002).unwrap();
         assert_eq!(fine.point.resolution, 400.0);
-        assert!(
-            (fine.cpu_seconds - 48.0).abs() < 1e-9,
-            "with its check at 200"
-        );
+        assert!((fine.cpu_seconds - 40.0).abs() < 1e-9, "ten cases");
+        assert_eq!(fine.scale, 1.5);
         let refused = of(0.001).unwrap_err();
         assert!(
-            refused.contains("2.0e-3") && refused.contains("[accuracy]"),
+            refused.contains("accuracy = 0.002 or more") && refused.contains("[accuracy]"),
             "{refused}"
         );
     }
 
     #[test]
+    fn a_cheaper_setting_that_is_finer_is_taken() {
+        let mut points = table();
+        points[1].cpu_seconds = 9.0;
+        let granted = choose(&points, 1.5, Wish::Accuracy(0.02), LOAD).unwrap();
+        assert_eq!(granted.point.resolution, 400.0);
+        let granted = choose(&points, 1.5, Wish::Budget(100.0), LOAD).unwrap();
+        assert_eq!(granted.point.resolution, 400.0);
+        // what just can be had is granted, what is asked in vain is told with what can be had
+        points[2].high_error = 0.01234;
+        for (asked, is_granted) in [(0.01234, true), (0.0124, true), (0.0123, false)] {
+            let found = choose(&points, 1.5, Wish::Accuracy(asked), LOAD);
+            assert_eq!(found.is_ok(), is_granted);
+            if let Err(reason) = found {
+                assert!(reason.contains("accuracy = 0.0124 or more"), "{reason}");
+            }
+        }
+    }
+
+    #[test]
     fn the_best_that_is_cheap_enough() {
-        let of = |seconds| choose(&table(), Wish::Budget(seconds), LOAD);
+        let of = |seconds| choose(&table(), 1.5, Wish::Budget(seconds), LOAD);
         assert_eq!(of(100.0).unwrap().point.resolution, 400.0);
         assert_eq!(of(10.0).unwrap().point.resolution, 200.0);
         assert_eq!(of(2.0).unwrap().point.resolution, 100.0);

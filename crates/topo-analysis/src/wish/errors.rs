@@ -3,7 +3,9 @@
 use serde::{Deserialize, Serialize};
 
 use super::Grant;
+use super::pair::Pair;
 use crate::nematic::NematicRow;
+use crate::system::System;
 use crate::table::SweepRow;
 
 /// The last discharge time of a case with an estimate of its error.
@@ -19,28 +21,16 @@ pub struct ErrorRow {
     pub result: Option<f64>,
     /// The same of the coarser run.
     pub coarser: Option<f64>,
-    /// Estimate of the relative error of the result.
+    /// Of a colloid what both extrapolate to at second order in the spacing: the value to take.
+    pub extrapolated: Option<f64>,
+    /// Estimate of the relative error of the extrapolated time, or of the result without one.
     pub relative_error: Option<f64>,
 }
 
 impl ErrorRow {
-    fn new(
-        grant: &Grant,
-        case: String,
-        cut: Option<f64>,
-        quantity: &str,
-        result: Option<f64>,
-        coarser: Option<f64>,
-    ) -> Self {
-        let difference = result.zip(coarser).map(|(a, b)| b / a - 1.0);
-        Self {
-            case,
-            cut,
-            quantity: quantity.to_owned(),
-            result,
-            coarser,
-            relative_error: result.map(|_| grant.point.estimate(difference)),
-        }
+    /// The time to take, of which the error is told.
+    pub fn value(&self) -> Option<f64> {
+        self.extrapolated.or(self.result)
     }
 }
 
@@ -60,14 +50,17 @@ pub fn errors_of_rods(grant: &Grant, rows: &[SweepRow], coarser: &[SweepRow]) ->
             .iter()
             .filter(|r| r.knot == row.knot && r.twist == row.twist)
             .nth(place(k, rows));
-        ErrorRow::new(
-            grant,
-            format!("{} {:+.2}", row.knot, row.twist),
-            Some(row.cut),
-            "t99",
-            row.t99,
-            beside.and_then(|r| r.t99),
-        )
+        let coarser = beside.and_then(|r| r.t99);
+        let pair = Pair::of(System::Rod, row.t99, coarser, grant.point.ratio());
+        ErrorRow {
+            case: format!("{} {:+.2}", row.knot, row.twist),
+            cut: Some(row.cut),
+            quantity: "t99".to_owned(),
+            result: row.t99,
+            coarser,
+            extrapolated: None,
+            relative_error: pair.value.map(|_| grant.estimate(&pair)),
+        }
     };
     rows.iter().enumerate().map(of).collect()
 }
@@ -80,14 +73,19 @@ pub fn errors_of_colloids(
 ) -> Vec<ErrorRow> {
     let of = |row: &NematicRow| {
         let beside = coarser.iter().find(|r| r.q == row.q && r.flow == row.flow);
-        ErrorRow::new(
-            grant,
-            row.case_name(),
-            None,
-            "t99.9",
-            row.t999,
-            beside.and_then(|r| r.t999),
-        )
+        let coarser = beside.and_then(|r| r.t999);
+        // grids are fitted to the cell
+        let ratio = beside.map_or(grant.point.ratio(), |r| r.spacing / row.spacing);
+        let pair = Pair::of(System::Nematic, row.t999, coarser, ratio);
+        ErrorRow {
+            case: row.case_name(),
+            cut: None,
+            quantity: "t99.9".to_owned(),
+            result: row.t999,
+            coarser,
+            extrapolated: pair.told.and(pair.value),
+            relative_error: pair.value.map(|_| grant.estimate(&pair)),
+        }
     };
     rows.iter().map(of).collect()
 }
@@ -96,6 +94,26 @@ pub fn errors_of_colloids(
 mod tests {
     use super::super::{Point, Wish};
     use super::*;
+
+    fn grant() -> Grant {
+        Grant {
+            wish: Wish::Accuracy(0.1),
+            point: Point {
+                resolution: 100.0,
+                tolerance: 1e-3,
+                median_error: 0.02,
+                high_error: 0.1,
+                cpu_seconds: 1.0,
+                peak_bytes: 1,
+                check_resolution: 50.0,
+                check_tolerance: 2e-3,
+                n_cases: 8,
+            },
+            scale: 2.0,
+            stale: None,
+            cpu_seconds: 1.0,
+        }
+    }
 
     #[test]
     fn cuts_are_matched_by_their_order() {
@@ -113,32 +131,48 @@ mod tests {
         ];
         let coarser = [
             row("3_1", 0.11, Some(10.1)),
-            row("3_1", 0.44, Some(21.0)),
+            row("3_1", 0.44, Some(23.0)),
             row("5_1", 0.2, Some(3.0)),
         ];
-        let grant = Grant {
-            wish: Wish::Accuracy(0.1),
-            point: Point {
-                resolution: 100.0,
-                tolerance: 1e-3,
-                median_error: 0.02,
-                high_error: 0.1,
-                cpu_seconds: 1.0,
-                peak_bytes: 1,
-                check_resolution: 60.0,
-                check_tolerance: 2e-3,
-                scale: 2.0,
-                n_cases: 8,
-            },
-            cpu_seconds: 1.0,
-        };
-        let found = errors_of_rods(&grant, &rows, &coarser);
+        let found = errors_of_rods(&grant(), &rows, &coarser);
         let errors: Vec<_> = found.iter().map(|r| r.relative_error).collect();
-        // a difference below the median error counts as that
+        // a difference that tells less than the median error counts as that
         assert!((errors[0].unwrap() - 0.04).abs() < 1e-12);
+        // at twice the edges a difference of 15 % tells an error of 5 %
         assert!((errors[1].unwrap() - 0.10).abs() < 1e-12);
         // without a coarser run nothing is known
-        assert!((errors[2].unwrap() - 2.0).abs() < 1e-12);
-        assert_eq!(errors[3], None);
+        assert_eq!((errors[2], errors[3]), (Some(1.0), None));
+        assert_eq!(
+            (found[1].value(), found[1].extrapolated),
+            (Some(20.0), None)
+        );
+    }
+
+    #[test]
+    fn times_of_colloids_are_extrapolated_by_the_grids_they_had() {
+        let row = |q: u32, spacing: f64, t999: Option<f64>| NematicRow {
+            q,
+            spacing,
+            t999,
+            flow: "off".to_owned(),
+            ..NematicRow::default()
+        };
+        // second order in the spacing, on grids fitted to the cell
+        let time = |h: f64| Some(8.0 - 0.3 * h * h);
+        let rows = [
+            row(2, 0.95, time(0.95)),
+            row(3, 0.95, Some(4.0)),
+            row(4, 0.95, None),
+        ];
+        let coarser = [row(2, 1.19, time(1.19)), row(4, 1.19, Some(2.0))];
+        let found = errors_of_colloids(&grant(), &rows, &coarser);
+        assert!((found[0].value().unwrap() - 8.0).abs() < 1e-12);
+        let told = 0.3 * 0.95 * 0.95 / time(0.95).unwrap();
+        assert!((found[0].relative_error.unwrap() - 2.0 * told).abs() < 1e-12);
+        assert_eq!((found[1].value(), found[1].extrapolated), (Some(4.0), None));
+        assert_eq!(
+            (found[1].relative_error, found[2].relative_error),
+            (Some(1.0), None)
+        );
     }
 }

@@ -2,9 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::pair::{Measurement, Pair, cases, quantity};
 use crate::statistics::{median, quantile};
 use crate::system::System;
-use crate::tradeoff::{TradeoffRow, resolution_of};
+use crate::tradeoff::{TradeoffRow, ladder_of};
 
 /// One setting, as measured over the cases of a trade-off in the time that wishes are about.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -13,195 +14,159 @@ pub struct Point {
     pub resolution: f64,
     /// Tolerance of the local error.
     pub tolerance: f64,
-    /// Median of the relative errors of the last time listed.
+    /// Median of the relative errors of the last time listed; of a colloid that extrapolated with the coarser run.
     pub median_error: f64,
     /// Their 90th percentile.
     pub high_error: f64,
-    /// Mean processor seconds of a case.
+    /// Mean processor seconds of a case, with the coarser run.
     pub cpu_seconds: f64,
     /// Most bytes of a case.
     pub peak_bytes: u64,
-    /// Resolution of the coarser run that it is compared with to estimate its error.
+    /// Resolution of the coarser run beside it.
     pub check_resolution: f64,
     /// Tolerance of that run.
     pub check_tolerance: f64,
-    /// An error is estimated as this times the larger of the median error and the difference to the coarser run.
-    pub scale: f64,
     /// Cases it was measured on.
     pub n_cases: usize,
 }
 
-/// Share of the cases whose error the estimate is to cover; more than promised, as other cases are less alike.
-const COVERED: f64 = 0.95;
+/// A setting with the coarser one beside it: resolutions and tolerances.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Setting {
+    pub fine: (f64, f64),
+    pub coarse: (f64, f64),
+}
 
-/// A quantile of a dozen cases is no sure one. With this factor, the smallest number of quarters that does, estimates covered nine
-/// tenths of 78 other cases; it was then checked on cases that it was not set on.
-const SAFETY: f64 = 1.75;
+impl Setting {
+    /// By how much it is finer than the coarser one.
+    pub(super) fn ratio(&self) -> f64 {
+        let ratio = self.coarse.0 / self.fine.0;
+        ratio.max(1.0 / ratio)
+    }
+}
 
 impl Point {
-    /// Estimate of the relative error of a run at this setting that differs by `difference` (relative) from the coarser one.
-    pub fn estimate(&self, difference: Option<f64>) -> f64 {
-        self.scale * difference.unwrap_or(1.0).abs().max(self.median_error)
-    }
-}
-
-/// The points that a trade-off measured: each setting with a coarser one beside it.
-pub fn points(system: System, rows: &[TradeoffRow]) -> Vec<Point> {
-    let quantity = match system {
-        System::Rod => "t99",
-        System::Nematic => "t99.9",
-        System::Knots => return Vec::new(),
-    };
-    let of: Vec<(f64, f64, &TradeoffRow)> = rows
-        .iter()
-        .filter(|r| r.setting == "resolution" && r.quantity == quantity)
-        .filter_map(|r| resolution_of(system, &r.value).map(|(n, t)| (n, t, r)))
-        .collect();
-    let distinct = |values: &mut Vec<f64>| {
-        values.sort_by(f64::total_cmp);
-        values.dedup();
-    };
-    let (mut resolutions, mut tolerances): (Vec<f64>, Vec<f64>) =
-        of.iter().map(|r| (r.0, r.1)).unzip();
-    distinct(&mut resolutions);
-    distinct(&mut tolerances);
-    if system == System::Nematic {
-        // from coarse to fine, as edges are
-        resolutions.reverse();
-    }
-    let mut points = Vec::new();
-    for (place, &resolution) in resolutions.iter().enumerate() {
-        for &tolerance in &tolerances {
-            let at = |n: f64, t: f64| -> Vec<&TradeoffRow> {
-                let same = of.iter().filter(|r| r.0 == n && r.1 == t);
-                same.map(|r| r.2).collect()
-            };
-            let own = at(resolution, tolerance);
-            // the nearest coarser setting that was measured
-            let looser = tolerances.iter().filter(|t| **t >= 1.9 * tolerance);
-            let check = resolutions[..place].iter().rev().find_map(|&n| {
-                looser
-                    .clone()
-                    .map(|&t| (n, t, at(n, t)))
-                    .find(|c| !c.2.is_empty())
-            });
-            let Some((check_resolution, check_tolerance, coarser)) = check else {
-                continue;
-            };
-            let errors: Vec<f64> = own
-                .iter()
-                .map(|r| r.relative_error.unwrap_or(1.0))
-                .collect();
-            let (Some(median_error), Some(high_error)) = (
-                median(errors.iter().copied()),
-                quantile(errors.iter().copied(), 0.9),
-            ) else {
-                continue;
-            };
-            let mut point = Point {
-                resolution,
-                tolerance,
-                median_error,
-                high_error,
-                cpu_seconds: own.iter().map(|r| r.cpu_seconds).sum::<f64>() / own.len() as f64,
-                peak_bytes: own.iter().map(|r| r.peak_bytes).max().unwrap_or(0),
-                check_resolution,
-                check_tolerance,
-                scale: 1.0,
-                n_cases: own.len(),
-            };
-            let ratios = own.iter().zip(&errors).map(|(row, error)| {
-                let other = coarser.iter().find(|r| r.case == row.case);
-                let difference = other
-                    .and_then(|o| o.result)
-                    .zip(row.result)
-                    .map(|(b, a)| b / a - 1.0);
-                error / point.estimate(difference)
-            });
-            point.scale = SAFETY * quantile(ratios, COVERED).unwrap_or(1.0).max(0.2);
-            points.push(point);
+    pub(super) fn setting(&self) -> Setting {
+        Setting {
+            fine: (self.resolution, self.tolerance),
+            coarse: (self.check_resolution, self.check_tolerance),
         }
     }
-    points
-}
 
-/// Tables of both systems, as this version was measured by `cargo xtask tradeoff --quality standard --record`.
-#[derive(Debug, Clone, Copy)]
-pub(crate) enum Measured {
-    Rod,
-    Nematic,
-}
-
-impl Measured {
-    /// Its points, cheapest first.
-    pub(crate) fn points(self) -> Vec<Point> {
-        let text = match self {
-            Self::Rod => include_str!("../../data/tradeoff-rod.csv"),
-            Self::Nematic => include_str!("../../data/tradeoff-nematic.csv"),
-        };
-        let rows = csv::Reader::from_reader(text.as_bytes()).into_deserialize::<Point>();
-        // a test reads every row
-        let mut points: Vec<Point> = rows.filter_map(Result::ok).collect();
-        points.sort_by(|a, b| a.cpu_seconds.total_cmp(&b.cpu_seconds));
-        points
+    /// By how much it is finer than the coarser run.
+    pub(super) fn ratio(&self) -> f64 {
+        self.setting().ratio()
     }
+
+    /// Estimate, up to the factor of the table, of the relative error of a pair of runs: what their difference tells, and no
+    /// less than the median error. None where the difference is not known.
+    pub(super) fn raw_estimate(&self, pair: &Pair) -> Option<f64> {
+        pair.told.map(|told| told.max(self.median_error))
+    }
+}
+
+/// The settings that wishes choose from, as a trade-off measured them, from coarse to fine.
+///
+/// # Validation
+/// `each_setting_is_compared_with_the_next_coarser`
+pub fn points(system: System, rows: &[TradeoffRow]) -> Vec<Point> {
+    let names = cases(rows);
+    let of = |pair: &[(f64, f64)]| {
+        let setting = Setting {
+            coarse: pair[0],
+            fine: pair[1],
+        };
+        let found: Vec<Measurement> = names
+            .iter()
+            .map(|case| Measurement::of(system, &setting, case, rows))
+            .filter(|m| m.reference.is_some())
+            .collect();
+        // a run that did not come so far is off by all of it
+        let errors = || found.iter().map(|m| m.error.unwrap_or(1.0));
+        let bytes = rows
+            .iter()
+            .filter(|r| quantity(system) == Some(r.quantity.as_str()))
+            .filter(|r| r.value == system.resolution_name(pair[1].0, pair[1].1));
+        Some(Point {
+            resolution: setting.fine.0,
+            tolerance: setting.fine.1,
+            median_error: median(errors())?,
+            high_error: quantile(errors(), 0.9)?,
+            cpu_seconds: found.iter().map(|m| m.cpu_seconds).sum::<f64>() / found.len() as f64,
+            peak_bytes: bytes.map(|r| r.peak_bytes).max()?,
+            check_resolution: setting.coarse.0,
+            check_tolerance: setting.coarse.1,
+            n_cases: found.len(),
+        })
+    };
+    ladder_of(system).windows(2).filter_map(of).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::tradeoff::{REFERENCE, TradeoffRun, compared};
 
-    #[test]
-    fn the_tables_are_whole() {
-        for (system, text) in [
-            (Measured::Rod, include_str!("../../data/tradeoff-rod.csv")),
-            (
-                Measured::Nematic,
-                include_str!("../../data/tradeoff-nematic.csv"),
-            ),
-        ] {
-            let points = system.points();
-            assert_eq!(points.len() + 1, text.lines().count(), "{system:?}");
-            assert!(points.len() >= 6, "{system:?}");
-            for p in points {
-                assert!(p.cpu_seconds > 0.0 && p.scale > 0.0 && p.high_error >= p.median_error);
-                assert!(p.n_cases > 1);
+    /// Runs of the whole ladder whose time is that of `time` at the resolution.
+    fn rows(system: System, time: impl Fn(f64) -> Option<f64>) -> Vec<TradeoffRow> {
+        let mut runs = Vec::new();
+        for case in ["a", "b", "c"] {
+            let mut put = |setting: &str, value: String, result| {
+                runs.push(TradeoffRun {
+                    case: case.to_owned(),
+                    setting: setting.to_owned(),
+                    value,
+                    quantity: quantity(system).unwrap().to_owned(),
+                    result,
+                    cpu_seconds: 1.5,
+                    peak_bytes: 7,
+                });
+            };
+            put(REFERENCE, "finest".to_owned(), Some(10.0));
+            for (resolution, tolerance) in ladder_of(system) {
+                let value = system.resolution_name(resolution, tolerance);
+                put("resolution", value, time(resolution));
             }
         }
+        compared(system, &runs)
     }
 
     #[test]
-    fn estimates_cover_what_they_were_measured_on() {
-        let mut rows = Vec::new();
-        for case in 0..20 {
-            let wobble = f64::from(case % 5) * 1e-3;
-            for (value, error) in [
-                ("N = 100, 2e-3 h", 0.05 + wobble),
-                ("N = 200, 1e-3 h", 0.01 + wobble),
-            ] {
-                rows.push(TradeoffRow {
-                    system: "rod".to_owned(),
-                    case: case.to_string(),
-                    setting: "resolution".to_owned(),
-                    value: value.to_owned(),
-                    quantity: "t99".to_owned(),
-                    result: Some(1.0 + error),
-                    reference: Some(1.0),
-                    relative_error: Some(error),
-                    cpu_seconds: 1.0,
-                    peak_bytes: 1,
-                    pareto: false,
-                });
-            }
+    fn each_setting_is_compared_with_the_next_coarser() {
+        let rods = points(
+            System::Rod,
+            &rows(System::Rod, |n| (n != 140.0).then(|| 10.0 + 10.0 / n)),
+        );
+        let ladder = ladder_of(System::Rod);
+        assert_eq!(
+            rods.len(),
+            ladder.len() - 1,
+            "the coarsest has none beside it"
+        );
+        for (p, pair) in rods.iter().zip(ladder.windows(2)) {
+            assert_eq!((p.check_resolution, p.check_tolerance), pair[0]);
+            assert_eq!((p.resolution, p.tolerance), pair[1]);
+            assert_eq!((p.n_cases, p.cpu_seconds, p.peak_bytes), (3, 3.0, 7));
+            // a run that failed is off by all of it
+            let error = if p.resolution == 140.0 {
+                1.0
+            } else {
+                1.0 / p.resolution
+            };
+            assert!((p.median_error - error).abs() < 1e-12 && (p.high_error - error).abs() < 1e-12);
         }
-        let found = points(System::Rod, &rows);
-        assert_eq!(found.len(), 1, "the coarsest has nothing to compare with");
-        let p = found[0];
-        assert_eq!((p.resolution, p.check_resolution), (200.0, 100.0));
-        assert!((p.median_error - 0.012).abs() < 1e-12);
-        // differences are four per cent, errors 1 to 1.4; the rest is the factor of safety
-        let estimate = p.estimate(Some(0.04 / 1.01));
-        assert!((0.0135..0.02).contains(&(estimate / SAFETY)), "{estimate}");
-        assert!(p.estimate(None) > 0.1);
+        // of colloids the extrapolated time counts: with errors of second order nothing is left, of fourth order little
+        let of = |power: i32| {
+            points(
+                System::Nematic,
+                &rows(System::Nematic, |h| Some(10.0 + h.powi(power))),
+            )
+        };
+        assert!(of(2).iter().all(|p| p.high_error < 1e-12));
+        let p = of(4)[1];
+        assert_eq!((p.resolution, p.check_resolution), (1.2, 1.5));
+        let left = 0.1 * (1.2_f64.powi(4) + (1.2_f64.powi(4) - 1.5_f64.powi(4)) / 0.5625);
+        assert!((p.high_error - left.abs()).abs() < 1e-12);
+        assert!(points(System::Knots, &[]).is_empty());
     }
 }

@@ -1,0 +1,154 @@
+//! The tables that scenes by wish take their settings from: recorded, given their factor, checked.
+
+use std::path::{Path, PathBuf};
+use std::time::SystemTime;
+
+use super::super::record::record_part;
+use super::{kept, measure};
+use crate::cli::TradeoffArgs;
+use crate::error::XtaskError;
+use crate::figures::Quality;
+use crate::provenance::{commit, workspace};
+use crate::{data, interrupt};
+use topo_analysis::{
+    COVERED, CaseSet, CheckRow, Factor, Measured, Point, Record, Stamp, System, TradeoffRow,
+    check_estimates, compared, factor_of_estimates, ladder, points, read_table, table_hash,
+    write_table,
+};
+
+/// Where the tables lie, below the workspace.
+const TABLES: &str = "crates/topo-analysis/data";
+
+fn place(table: Measured, extension: &str) -> PathBuf {
+    let name = format!("tradeoff-{}.{extension}", table.system().name());
+    workspace().join(TABLES).join(name)
+}
+
+/// What is measured now by the present code.
+fn stamp(table: Measured, n_cases: usize) -> Stamp {
+    let now = humantime::format_rfc3339_seconds(SystemTime::now()).to_string();
+    Stamp {
+        results: table.results_version(),
+        commit: commit(&workspace()),
+        date: now.split('T').next().unwrap_or_default().to_owned(),
+        n_cases,
+    }
+}
+
+fn text(path: &Path) -> Result<String, XtaskError> {
+    std::fs::read_to_string(path).map_err(|source| XtaskError::File {
+        path: path.to_owned(),
+        source,
+    })
+}
+
+fn write_record(table: Measured, record: &Record) -> Result<(), XtaskError> {
+    let path = place(table, "json");
+    let text = serde_json::to_string_pretty(record)
+        .map_err(|e| XtaskError::Input(format!("{}: {e}", path.display())))?;
+    data::write(&path, format!("{text}\n").as_bytes())?;
+    println!("recorded: {}", path.display());
+    Ok(())
+}
+
+/// The page on all this.
+const PAGE: &str = "tradeoff.md";
+
+/// Writes what a trade-off measured into the table of its system, which has no factor then, and into the page; knots have no
+/// table.
+pub fn record_table(system: System, rows: &[TradeoffRow]) -> Result<(), XtaskError> {
+    let Some(table) = Measured::ALL.into_iter().find(|t| t.system() == system) else {
+        return Ok(());
+    };
+    let points = points(system, rows);
+    let path = place(table, "csv");
+    write_table(&path, &points)?;
+    println!("recorded: {}", path.display());
+    let n_cases = points.iter().map(|p| p.n_cases).max().unwrap_or(0);
+    let record = Record {
+        table: stamp(table, n_cases),
+        factor: None,
+    };
+    write_record(table, &record)?;
+    let text = crate::tradeoff::section(Quality::Standard, system, rows);
+    record_part(PAGE, &format!("{} settings", system.name()), &text)
+}
+
+/// Runs the settings of wishes on the cases of a set: the factor from one, how it holds from the other.
+pub fn measure_set(args: &TradeoffArgs, name: &str, folder: &Path) -> Result<(), XtaskError> {
+    let stop = interrupt::install();
+    let set = if name == CaseSet::Factor.name() {
+        CaseSet::Factor
+    } else {
+        CaseSet::Check
+    };
+    let mut checked: Vec<CheckRow> = Vec::new();
+    for table in Measured::ALL {
+        let system = table.system();
+        if !args.systems.takes(system) {
+            continue;
+        }
+        let kept = kept(folder, &format!("{}-{name}", system.name()));
+        let runs = measure(system.name(), &args.systems, &kept, &stop, |work| {
+            ladder(system, set, work)
+        })?;
+        write_table(&kept, &runs)?;
+        interrupt::check(&stop)?;
+        let rows = compared(system, &runs);
+        write_table(&folder.join(format!("{}-{name}.csv", system.name())), &rows)?;
+        let points: Vec<Point> = read_table(&place(table, "csv"))?;
+        let json = place(table, "json");
+        let mut record: Record = serde_json::from_str(&text(&json)?)
+            .map_err(|e| XtaskError::Input(format!("{}: {e}", json.display())))?;
+        if set == CaseSet::Factor {
+            let (scale, n_cases) = factor_of_estimates(system, &points, &rows, COVERED)
+                .ok_or_else(|| XtaskError::Input(format!("no case of {} ran", system.name())))?;
+            println!(
+                "{}: {scale:.3} times the raw estimate covers {:.0} % of the errors of {n_cases} cases",
+                system.name(),
+                100.0 * COVERED
+            );
+            if args.record {
+                record.factor = Some(Factor {
+                    table: table_hash(&text(&place(table, "csv"))?),
+                    share: COVERED,
+                    scale,
+                    measured: stamp(table, n_cases),
+                });
+                write_record(table, &record)?;
+            }
+        } else {
+            let factor = record.factor.ok_or_else(|| {
+                XtaskError::Input(format!(
+                    "{} has no factor yet: run `cargo xtask tradeoff --set factor --record` first",
+                    json.display()
+                ))
+            })?;
+            checked.extend(check_estimates(system, &points, factor.scale, &rows));
+        }
+    }
+    if set == CaseSet::Check {
+        write_table(&folder.join("check.csv"), &checked)?;
+        let report = crate::tradeoff::check_report(&checked);
+        data::write(&folder.join("check.md"), report.as_bytes())?;
+        println!("{report}");
+        if args.record {
+            for table in Measured::ALL {
+                let name = table.system().name();
+                let of: Vec<CheckRow> = checked
+                    .iter()
+                    .filter(|r| r.system == name)
+                    .cloned()
+                    .collect();
+                if !of.is_empty() {
+                    record_part(
+                        PAGE,
+                        &format!("{name} check"),
+                        &crate::tradeoff::check_report(&of),
+                    )?;
+                }
+            }
+        }
+    }
+    Ok(())
+}
