@@ -34,7 +34,7 @@ pub use start_file::StartCurve;
 pub use table::{Chirality, KnotEntry, KnotTable, mirror_name};
 pub use tighten::{
     Certificate, SecondOpinion, TightKnot, TightenSettings, second_opinion, struts, tighten,
-    tighten_entry,
+    tighten_by_hops, tighten_entry,
 };
 
 pub use topo_core::{Thickness, thickness, thickness_brute_force, windowed_half_distance};

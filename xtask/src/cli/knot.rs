@@ -64,6 +64,9 @@ pub struct TightenArgs {
     /// Start also from this number of inversions in spheres around random points: for knots that end in a poor minimum.
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub inversions: usize,
+    /// Search by this number of hops between basins from random words of the braid instead: half a second each, uphill too.
+    #[arg(long, value_name = "N", default_value_t = 0, conflicts_with_all = ["curve", "inversions"])]
+    pub hops: usize,
     /// Seed of the random choices of the search.
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,

@@ -38,7 +38,8 @@ fn colloid(out: &Path, keep_fields: bool) -> PathBuf {
 #[test]
 #[ignore = "needs Python with numpy, pyvista and meshio: `cargo xtask test` runs it where there is one"]
 fn python_reads_exported_cases_by_pyvista_meshio_and_numpy() {
-    let python = Outside::Python.find().expect(Outside::Python.needs());
+    let needs = Outside::Python.needs();
+    let python = Outside::Python.find().expect(needs);
     let dir = tempfile::tempdir().unwrap();
     let (rod, ball) = (fibre(dir.path()), colloid(dir.path(), true));
     let (a, b) = (dir.path().join("a"), dir.path().join("b"));

@@ -81,7 +81,8 @@ fn the_page_loads_nothing_from_the_network() {
 #[test]
 #[ignore = "needs Chromium: `cargo xtask test` runs it where there is one"]
 fn browser_the_viewer_turns_slides_and_chooses() {
-    let browser = Outside::Browser.find().expect(Outside::Browser.needs());
+    let needs = Outside::Browser.needs();
+    let browser = Outside::Browser.find().expect(needs);
     let dir = tempfile::tempdir().unwrap();
     let page = page(dir.path());
     for size in ["1200,900", "500,900"] {

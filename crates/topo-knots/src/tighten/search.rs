@@ -11,11 +11,11 @@ use super::{Invariants, KnotError, check_type};
 use crate::thickness;
 
 /// Amplitude of kicks in units of the thickness; below 1 strands cannot pass each other.
-const KICK: f64 = 0.7;
+pub(super) const KICK: f64 = 0.7;
 /// Vertices per unit of ropelength that a loose start needs to bend freely.
 const LOOSE_PER_UNIT: f64 = 0.8;
 /// Relative difference of ropelength that the resolution of the search does not decide.
-const NEAR_TIE: f64 = 1e-2;
+pub(super) const NEAR_TIE: f64 = 1e-2;
 /// Curves that share the kicks at first.
 const N_FINALISTS: usize = 2;
 
@@ -122,7 +122,7 @@ fn level() -> Level {
 }
 
 /// Tightens a start that may be several times too long: first with as many vertices as it needs to bend.
-fn tighten_loose(start: &Polyline, settings: &TightenSettings) -> Option<Outcome> {
+pub(super) fn tighten_loose(start: &Polyline, settings: &TightenSettings) -> Option<Outcome> {
     let n = settings.search_vertices;
     let n_loose =
         (LOOSE_PER_UNIT * start.length() / thickness(start).tau).min(4.0 * n as f64) as usize;

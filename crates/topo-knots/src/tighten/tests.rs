@@ -187,6 +187,26 @@ fn the_same_seed_gives_the_same_curve() {
 }
 
 #[test]
+fn hops_lead_to_published_lengths() {
+    let table = KnotTable::builtin();
+    for (name, n_hops) in [("3_1", 2), ("5_2", 6)] {
+        let knot = table.get(name).expect("known");
+        let by_hops =
+            |knot| tighten_by_hops(knot, n_hops, &TightenSettings::draft()).expect("tight");
+        let tight = by_hops(knot);
+        let excess = tight.length_over_radius / knot.length_over_radius.expect("published") - 1.0;
+        println!(
+            "{name}: {:+.3} %, {:.1} s",
+            100.0 * excess,
+            tight.cpu_seconds
+        );
+        assert!((-0.005..0.006).contains(&excess), "{name}: {excess}");
+        knot.verify(&tight.curve).expect("the same knot");
+        assert_eq!(by_hops(&knot.mirror()).curve, tight.mirror().curve);
+    }
+}
+
+#[test]
 fn mirror_images_are_tightened_as_the_knot_itself() {
     let table = KnotTable::builtin();
     let quick = TightenSettings {
@@ -344,5 +364,32 @@ fn padded_words_close_to_the_same_knot() {
             knot.verify(&closed_braid(&word).expect("a knot"))
                 .expect("the same knot");
         }
+    }
+}
+
+/// The start curves of the table are what the commands in their files find.
+#[test]
+#[ignore = "long: 2 to 3 minutes"]
+fn long_hops_find_the_starts_of_the_table() {
+    let table = KnotTable::builtin();
+    for (name, seed, n_hops) in [
+        ("8_1", 2, 8),
+        ("8_2", 1, 29),
+        ("8_10", 1, 87),
+        ("8_14", 2, 68),
+    ] {
+        let knot = table.get(name).expect("known");
+        let settings = TightenSettings {
+            seed,
+            ..TightenSettings::standard()
+        };
+        let tight = tighten_by_hops(knot, n_hops, &settings).expect("tight");
+        let excess = tight.length_over_radius / knot.length_over_radius.expect("published") - 1.0;
+        println!(
+            "{name}: {:+.3} %, {:.1} s",
+            100.0 * excess,
+            tight.cpu_seconds
+        );
+        assert!((-0.005..0.001).contains(&excess), "{name}: {excess}");
     }
 }

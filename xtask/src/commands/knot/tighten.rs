@@ -10,7 +10,7 @@ use std::path::Path;
 use topo_core::write_atomic_bytes;
 use topo_knots::{
     KnotEntry, KnotError, KnotTable, TightKnot, TightenSettings, ideal, parse_braid, read_curve,
-    second_opinion, write_curve,
+    second_opinion, tighten_by_hops, write_curve,
 };
 
 pub(super) fn run(args: &TightenArgs, knots: &KnotTable) -> Result<(), XtaskError> {
@@ -31,7 +31,10 @@ pub(super) fn run(args: &TightenArgs, knots: &KnotTable) -> Result<(), XtaskErro
         .with_max_len(1)
         .map(|entry| {
             interrupt::check(&stop)?;
-            let tight = ideal(entry, &settings, Some(&cache))?;
+            let tight = match args.hops {
+                0 => ideal(entry, &settings, Some(&cache))?,
+                n => tighten_by_hops(entry, n, &settings)?,
+            };
             let row = Row::new(entry, &tight, write(entry, &tight, args, folder)?);
             println!("{}", row.told);
             Ok(row)
