@@ -239,7 +239,7 @@ pub fn section(quality: Quality, system: System, rows: &[TradeoffRow]) -> String
     put(String::new());
     let points = points(system, rows);
     if quality == Quality::Standard && !points.is_empty() {
-        put("What scenes by wish choose from: errors of the last time listed, of a colloid of the time extrapolated with the coarser run; costs of both runs.\n".to_owned());
+        put("What scenes by wish choose from: errors of the last time listed; costs of both runs.\n".to_owned());
         put("| setting | coarser run | cases | median | 90 % | CPU s a case | MB |".to_owned());
         put("|---|---|---|---|---|---|---|".to_owned());
         for p in points {

@@ -31,7 +31,7 @@ pub fn tell_errors(grant: &Grant, rows: &[ErrorRow], folder: &Path) -> Result<()
     println!("estimated errors:");
     for r in rows {
         let time = r
-            .value()
+            .result
             .map_or_else(|| "not reached".to_owned(), |t| format!("{t:.4}"));
         let error = r
             .relative_error

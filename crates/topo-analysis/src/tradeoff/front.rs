@@ -41,7 +41,12 @@ impl Setting {
 /// computed, not how accurately, or (the second method of tightening) starts from the result of another.
 fn group(setting: &str) -> Option<&str> {
     match setting {
-        REFERENCE | "finest grids" | "contact stiffness" | "reading" | "flow" | "buckled ring"
+        REFERENCE
+        | "grid of the reference"
+        | "contact stiffness"
+        | "reading"
+        | "flow"
+        | "buckled ring"
         | "method" => None,
         "tolerance" | "storage" => Some("time"),
         "flow solver" => Some("flow"),

@@ -30,7 +30,7 @@ const DRAFT_CASES: [(&str, f64); 9] = [
 /// Edges and tolerances of the numerical settings.
 const EDGES: [usize; 4] = [64, 100, 140, 200];
 const TOLERANCES: [f64; 5] = [1e-2, 4e-3, 2e-3, 1e-3, 5e-4];
-/// What wishes choose from, from coarse to fine; each is compared with the one before it, so that the first is none of them.
+/// What wishes choose from, from coarse to fine; each has a coarser one beside it, so that the first is none of them.
 ///
 /// The error is that of the edges: tolerances are as loose as leaves it so.
 pub(super) const LADDER: [(usize, f64); 6] = [

@@ -3,7 +3,6 @@
 use serde::Serialize;
 
 use super::Wish;
-use super::pair::Pair;
 use super::record::Measured;
 use super::table::Point;
 use crate::cost::EFFICIENCY;
@@ -24,9 +23,10 @@ pub struct Grant {
 }
 
 impl Grant {
-    /// Estimate of the relative error of a pair of runs; without a coarser run nothing is known, and it is one.
-    pub(super) fn estimate(&self, pair: &Pair) -> f64 {
-        let raw = self.point.raw_estimate(pair);
+    /// Estimate of the relative error of a run of which a coarser one tells so much; without that nothing is known, and it is
+    /// one.
+    pub(super) fn estimate(&self, told: Option<f64>) -> f64 {
+        let raw = self.point.raw_estimate(told);
         raw.map_or(1.0, |raw| self.scale * raw)
     }
 }

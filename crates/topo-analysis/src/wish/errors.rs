@@ -3,9 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::Grant;
-use super::pair::Pair;
+use super::pair::told;
 use crate::nematic::NematicRow;
-use crate::system::System;
 use crate::table::SweepRow;
 
 /// The last discharge time of a case with an estimate of its error.
@@ -21,17 +20,8 @@ pub struct ErrorRow {
     pub result: Option<f64>,
     /// The same of the coarser run.
     pub coarser: Option<f64>,
-    /// Of a colloid what both extrapolate to at second order in the spacing: the value to take.
-    pub extrapolated: Option<f64>,
-    /// Estimate of the relative error of the extrapolated time, or of the result without one.
+    /// Estimate of the relative error of the result.
     pub relative_error: Option<f64>,
-}
-
-impl ErrorRow {
-    /// The time to take, of which the error is told.
-    pub fn value(&self) -> Option<f64> {
-        self.extrapolated.or(self.result)
-    }
 }
 
 /// Errors of the discharges `rows`, beside coarser ones of the same cuts.
@@ -51,15 +41,14 @@ pub fn errors_of_rods(grant: &Grant, rows: &[SweepRow], coarser: &[SweepRow]) ->
             .filter(|r| r.knot == row.knot && r.twist == row.twist)
             .nth(place(k, rows));
         let coarser = beside.and_then(|r| r.t99);
-        let pair = Pair::of(System::Rod, row.t99, coarser, grant.point.ratio());
+        let told = told(row.t99, coarser, grant.point.ratio());
         ErrorRow {
             case: format!("{} {:+.2}", row.knot, row.twist),
             cut: Some(row.cut),
             quantity: "t99".to_owned(),
             result: row.t99,
             coarser,
-            extrapolated: None,
-            relative_error: pair.value.map(|_| grant.estimate(&pair)),
+            relative_error: row.t99.map(|_| grant.estimate(told)),
         }
     };
     rows.iter().enumerate().map(of).collect()
@@ -76,15 +65,14 @@ pub fn errors_of_colloids(
         let coarser = beside.and_then(|r| r.t999);
         // grids are fitted to the cell
         let ratio = beside.map_or(grant.point.ratio(), |r| r.spacing / row.spacing);
-        let pair = Pair::of(System::Nematic, row.t999, coarser, ratio);
+        let told = told(row.t999, coarser, ratio);
         ErrorRow {
             case: row.case_name(),
             cut: None,
             quantity: "t99.9".to_owned(),
             result: row.t999,
             coarser,
-            extrapolated: pair.told.and(pair.value),
-            relative_error: pair.value.map(|_| grant.estimate(&pair)),
+            relative_error: row.t999.map(|_| grant.estimate(told)),
         }
     };
     rows.iter().map(of).collect()
@@ -149,7 +137,7 @@ mod tests {
     }
 
     #[test]
-    fn times_of_colloids_are_extrapolated_by_the_grids_they_had() {
+    fn errors_of_colloids_are_told_by_the_grids_they_had() {
         let row = |q: u32, spacing: f64, t999: Option<f64>| NematicRow {
             q,
             spacing,
@@ -166,13 +154,7 @@ mod tests {
         ];
         let coarser = [row(2, 1.19, time(1.19)), row(4, 1.19, Some(2.0))];
         let found = errors_of_colloids(&grant(), &rows, &coarser);
-        assert!((found[0].value().unwrap() - 8.0).abs() < 1e-12);
-        let told = 0.3 * 0.95 * 0.95 / time(0.95).unwrap();
-        assert!((found[0].relative_error.unwrap() - 2.0 * told).abs() < 1e-12);
-        assert_eq!((found[1].value(), found[1].extrapolated), (Some(4.0), None));
-        assert_eq!(
-            (found[1].relative_error, found[2].relative_error),
-            (Some(1.0), None)
-        );
+        let error = 0.3 * 0.95 * 0.95 / time(0.95).unwrap();
+        assert!((found[0].relative_error.unwrap() - 2.0 * error).abs() < 1e-12);
     }
 }

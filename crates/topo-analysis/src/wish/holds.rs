@@ -32,7 +32,7 @@ pub fn factor_of_estimates(
     let ratios = names.iter().flat_map(|case| {
         points.iter().filter_map(|p| {
             let found = Measurement::of(system, &p.setting(), case, rows);
-            Some(found.error? / p.raw_estimate(&found.pair)?)
+            Some(found.error? / p.raw_estimate(found.told)?)
         })
     });
     Some((quantile(ratios, share)?, names.len()))
@@ -51,7 +51,7 @@ pub struct CheckRow {
     pub asked: String,
     /// The error that the table says nine cases of ten stay below.
     pub promised: f64,
-    /// The time found, of a colloid extrapolated.
+    /// The time found.
     pub result: Option<f64>,
     /// That of the reference.
     pub reference: Option<f64>,
@@ -101,14 +101,14 @@ pub fn check_estimates(
         let asked: Vec<String> = of.map(|p| format!("{} %", 100.0 * p.0)).collect();
         for case in cases(rows) {
             let measured = Measurement::of(system, &point.setting(), case, rows);
-            let estimate = point.raw_estimate(&measured.pair);
+            let estimate = point.raw_estimate(measured.told);
             found.push(CheckRow {
                 system: system.name().to_owned(),
                 case: case.to_owned(),
                 setting: system.resolution_name(point.resolution, point.tolerance),
                 asked: asked.join(", "),
                 promised: point.high_error,
-                result: measured.pair.value,
+                result: measured.result,
                 reference: measured.reference,
                 relative_error: measured.error,
                 estimate: estimate.map(|e| scale * e),

@@ -1,54 +1,47 @@
-//! A run beside its coarser one: the best value that both tell, and how far off it may be.
+//! A run beside its coarser one, and how far off that says it is.
 
-use serde::{Deserialize, Serialize};
-
-use super::table::Setting;
 use crate::system::System;
 use crate::tradeoff::{TradeoffRow, fitted_ratio};
 
-/// Order of the error in the resolution. In colloids it holds, and the value is extrapolated; in rods (near ties of contacts,
-/// places of cuts among the vertices) hardly, so that it only turns a difference into an error of about the right size.
+use super::table::Setting;
+
+/// Order of the error in the resolution. In colloids it holds; in rods (near ties of contacts, places of cuts among the
+/// vertices) a difference becomes an error of about the right size.
 const ORDER: f64 = 2.0;
 
 /// Grids nearer to each other tell nothing: small cells may have hardly another one.
 const LEAST_RATIO: f64 = 1.05;
 
-/// What a run and a coarser one say of the last time listed.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Pair {
-    /// The time of the run, of a colloid extrapolated with the coarser one.
-    pub value: Option<f64>,
-    /// Relative error of the run itself as the difference to the coarser one tells it.
-    pub told: Option<f64>,
+/// Relative error of a time `fine` that one on a grid coarser by `ratio` tells; none where one of them is lacking.
+///
+/// # Validation
+/// `errors_of_second_order_are_told`
+pub(crate) fn told(fine: Option<f64>, coarse: Option<f64>, ratio: f64) -> Option<f64> {
+    let (fine, coarse) = fine.zip(coarse).filter(|_| ratio > LEAST_RATIO)?;
+    Some((coarse / fine - 1.0).abs() / gain(ratio))
 }
 
-impl Pair {
-    /// A run with time `fine` and one with time `coarse` on a grid coarser by `ratio`.
-    ///
-    /// # Validation
-    /// `times_are_extrapolated_at_second_order`
-    pub(crate) fn of(system: System, fine: Option<f64>, coarse: Option<f64>, ratio: f64) -> Self {
-        let gain = ratio.powf(ORDER) - 1.0;
-        let both = fine.zip(coarse).filter(|_| ratio > LEAST_RATIO);
-        let value = match both {
-            Some((fine, coarse)) if system == System::Nematic => {
-                Some(fine + (fine - coarse) / gain)
-            }
-            _ => fine,
-        };
-        Self {
-            value,
-            told: both.map(|(fine, coarse)| (coarse / fine - 1.0).abs() / gain),
-        }
-    }
+/// What a time `fine` and one on a grid coarser by `ratio` tend to on finer grids.
+///
+/// # Validation
+/// `errors_of_second_order_are_told`
+pub(crate) fn extrapolated(fine: f64, coarse: f64, ratio: f64) -> f64 {
+    fine + (fine - coarse) / gain(ratio)
+}
+
+/// Difference of two times, in errors of the finer one.
+fn gain(ratio: f64) -> f64 {
+    ratio.powf(ORDER) - 1.0
 }
 
 /// A setting of a table on one case.
 pub(super) struct Measurement {
-    pub pair: Pair,
+    pub result: Option<f64>,
     pub reference: Option<f64>,
-    /// |value/reference − 1|.
+    /// |result/reference − 1|.
     pub error: Option<f64>,
+    /// What the coarser run tells of it.
+    pub told: Option<f64>,
     /// Processor seconds of both runs.
     pub cpu_seconds: f64,
 }
@@ -68,13 +61,12 @@ impl Measurement {
         let (own, coarser) = (at(setting.fine), at(setting.coarse));
         let ratio = fitted_ratio(system, case, setting.coarse.0, setting.fine.0)
             .unwrap_or_else(|| setting.ratio());
-        let result = |row: Option<&TradeoffRow>| row.and_then(|r| r.result);
-        let pair = Pair::of(system, result(own), result(coarser), ratio);
-        let reference = own.and_then(|r| r.reference);
+        let result = own.and_then(|r| r.result);
         Self {
-            pair,
-            reference,
-            error: pair.value.zip(reference).map(|(a, b)| (a / b - 1.0).abs()),
+            result,
+            reference: own.and_then(|r| r.reference),
+            error: own.and_then(|r| r.relative_error),
+            told: told(result, coarser.and_then(|r| r.result), ratio),
             cpu_seconds: own.into_iter().chain(coarser).map(|r| r.cpu_seconds).sum(),
         }
     }
@@ -105,20 +97,19 @@ mod tests {
     use super::*;
 
     #[test]
-    fn times_are_extrapolated_at_second_order() {
+    fn errors_of_second_order_are_told() {
         let time = |h: f64| 8.0 - 0.3 * h * h;
-        let of = |system| Pair::of(system, Some(time(0.5)), Some(time(0.75)), 1.5);
-        let colloid = of(System::Nematic);
-        assert!((colloid.value.unwrap() - 8.0).abs() < 1e-12);
-        // the error of the finer run, over its time
-        assert!((colloid.told.unwrap() - 0.075 / time(0.5)).abs() < 1e-12);
-        let rod = of(System::Rod);
-        assert_eq!((rod.value, rod.told), (Some(time(0.5)), colloid.told));
-        let alone = Pair::of(System::Nematic, Some(3.0), None, 1.5);
-        assert_eq!((alone.value, alone.told), (Some(3.0), None));
-        // two runs on one grid tell nothing
-        let same = Pair::of(System::Nematic, Some(3.0), Some(3.1), 1.0);
-        assert_eq!((same.value, same.told), (Some(3.0), None));
-        assert_eq!(Pair::of(System::Rod, None, Some(3.0), 1.5).value, None);
+        let (fine, coarse) = (time(0.5), time(0.75));
+        assert!((extrapolated(fine, coarse, 1.5) - 8.0).abs() < 1e-12);
+        let error = told(Some(fine), Some(coarse), 1.5).unwrap();
+        assert!((error - 0.075 / fine).abs() < 1e-12);
+        // without a second run, or with one on the same grid, nothing is told
+        for (a, b, ratio) in [
+            (Some(3.0), None, 1.5),
+            (None, Some(3.0), 1.5),
+            (Some(3.0), Some(3.1), 1.0),
+        ] {
+            assert_eq!(told(a, b, ratio), None);
+        }
     }
 }

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::pair::{Measurement, Pair, cases, quantity};
+use super::pair::{Measurement, cases, quantity};
 use crate::statistics::{median, quantile};
 use crate::system::System;
 use crate::tradeoff::{TradeoffRow, ladder_of};
@@ -14,7 +14,7 @@ pub struct Point {
     pub resolution: f64,
     /// Tolerance of the local error.
     pub tolerance: f64,
-    /// Median of the relative errors of the last time listed; of a colloid that extrapolated with the coarser run.
+    /// Median of the relative errors of the last time listed.
     pub median_error: f64,
     /// Their 90th percentile.
     pub high_error: f64,
@@ -58,24 +58,36 @@ impl Point {
         self.setting().ratio()
     }
 
-    /// Estimate, up to the factor of the table, of the relative error of a pair of runs: what their difference tells, and no
-    /// less than the median error. None where the difference is not known.
-    pub(super) fn raw_estimate(&self, pair: &Pair) -> Option<f64> {
-        pair.told.map(|told| told.max(self.median_error))
+    /// Estimate, up to the factor of the table, of the relative error of a run: what the coarser run tells, and no less than
+    /// the median error. None where nothing is told.
+    pub(super) fn raw_estimate(&self, told: Option<f64>) -> Option<f64> {
+        told.map(|told| told.max(self.median_error))
     }
+}
+
+/// A coarser run should be coarser by more than this: differences to nearer ones are rather those of how a sphere falls on the
+/// lattice, or of ties of contacts.
+const COARSER: f64 = 1.6;
+
+/// Settings of a ladder from coarse to fine, each with the finest that is enough coarser, or with the coarsest.
+fn settings(ladder: &[(f64, f64)]) -> Vec<Setting> {
+    let beside = |k: usize| {
+        let fine = ladder[k];
+        let with = |&coarse: &(f64, f64)| Setting { fine, coarse };
+        let all = || ladder[..k].iter().rev().map(with);
+        let enough = all().find(|s| s.ratio() > COARSER);
+        enough.or_else(|| all().next_back())
+    };
+    (0..ladder.len()).filter_map(beside).collect()
 }
 
 /// The settings that wishes choose from, as a trade-off measured them, from coarse to fine.
 ///
 /// # Validation
-/// `each_setting_is_compared_with_the_next_coarser`
+/// `each_setting_has_a_coarser_one_beside_it`
 pub fn points(system: System, rows: &[TradeoffRow]) -> Vec<Point> {
     let names = cases(rows);
-    let of = |pair: &[(f64, f64)]| {
-        let setting = Setting {
-            coarse: pair[0],
-            fine: pair[1],
-        };
+    let of = |setting: Setting| {
         let found: Vec<Measurement> = names
             .iter()
             .map(|case| Measurement::of(system, &setting, case, rows))
@@ -86,7 +98,7 @@ pub fn points(system: System, rows: &[TradeoffRow]) -> Vec<Point> {
         let bytes = rows
             .iter()
             .filter(|r| quantity(system) == Some(r.quantity.as_str()))
-            .filter(|r| r.value == system.resolution_name(pair[1].0, pair[1].1));
+            .filter(|r| r.value == system.resolution_name(setting.fine.0, setting.fine.1));
         Some(Point {
             resolution: setting.fine.0,
             tolerance: setting.fine.1,
@@ -99,7 +111,10 @@ pub fn points(system: System, rows: &[TradeoffRow]) -> Vec<Point> {
             n_cases: found.len(),
         })
     };
-    ladder_of(system).windows(2).filter_map(of).collect()
+    settings(&ladder_of(system))
+        .into_iter()
+        .filter_map(of)
+        .collect()
 }
 
 #[cfg(test)]
@@ -132,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn each_setting_is_compared_with_the_next_coarser() {
+    fn each_setting_has_a_coarser_one_beside_it() {
         let rods = points(
             System::Rod,
             &rows(System::Rod, |n| (n != 140.0).then(|| 10.0 + 10.0 / n)),
@@ -143,9 +158,24 @@ mod tests {
             ladder.len() - 1,
             "the coarsest has none beside it"
         );
-        for (p, pair) in rods.iter().zip(ladder.windows(2)) {
-            assert_eq!((p.check_resolution, p.check_tolerance), pair[0]);
-            assert_eq!((p.resolution, p.tolerance), pair[1]);
+        for (p, own) in rods.iter().zip(&ladder[1..]) {
+            assert_eq!((p.resolution, p.tolerance), *own);
+        }
+        let beside: Vec<_> = rods
+            .iter()
+            .map(|p| (p.resolution, p.check_resolution))
+            .collect();
+        assert_eq!(
+            beside,
+            [
+                (100.0, 70.0),
+                (140.0, 70.0),
+                (200.0, 100.0),
+                (280.0, 140.0),
+                (400.0, 200.0)
+            ]
+        );
+        for p in &rods {
             assert_eq!((p.n_cases, p.cpu_seconds, p.peak_bytes), (3, 3.0, 7));
             // a run that failed is off by all of it
             let error = if p.resolution == 140.0 {
@@ -155,18 +185,20 @@ mod tests {
             };
             assert!((p.median_error - error).abs() < 1e-12 && (p.high_error - error).abs() < 1e-12);
         }
-        // of colloids the extrapolated time counts: with errors of second order nothing is left, of fourth order little
-        let of = |power: i32| {
-            points(
-                System::Nematic,
-                &rows(System::Nematic, |h| Some(10.0 + h.powi(power))),
-            )
-        };
-        assert!(of(2).iter().all(|p| p.high_error < 1e-12));
-        let p = of(4)[1];
-        assert_eq!((p.resolution, p.check_resolution), (1.2, 1.5));
-        let left = 0.1 * (1.2_f64.powi(4) + (1.2_f64.powi(4) - 1.5_f64.powi(4)) / 0.5625);
-        assert!((p.high_error - left.abs()).abs() < 1e-12);
+        let colloids = points(System::Nematic, &rows(System::Nematic, |h| Some(10.0 + h)));
+        let beside: Vec<_> = colloids
+            .iter()
+            .map(|p| (p.resolution, p.check_resolution))
+            .collect();
+        assert_eq!(
+            beside,
+            [(1.5, 2.0), (1.2, 2.0), (1.0, 2.0), (0.75, 1.5), (0.5, 1.0)]
+        );
+        assert!(
+            colloids
+                .iter()
+                .all(|p| (p.high_error - 0.1 * p.resolution).abs() < 1e-12)
+        );
         assert!(points(System::Knots, &[]).is_empty());
     }
 }
