@@ -58,7 +58,7 @@ fn law_link_is_kept_through_a_charge() {
             (last.writhe - first.writhe).abs() > 1e-3,
             "nothing was exchanged"
         );
-        assert!(drift < 1e-8, "link drifts by {drift:.1e}");
+        assert!(drift < 1e-10, "link drifts by {drift:.1e}");
     }
 }
 
@@ -226,7 +226,7 @@ fn law_forced_crossing_is_caught_by_the_certificate() {
         } | StopReason::StepLimit { .. }
     );
     assert!(stuck, "{}", report.stop);
-    assert!(report.link_drift.unwrap() < 1e-8, "a strand has passed");
+    assert!(report.link_drift.unwrap() < 1e-10, "a strand has passed");
     // the same with contact goes through
     let parameters = RodParameters {
         contact: Some(ContactParameters::default()),

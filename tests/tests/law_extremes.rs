@@ -1,7 +1,9 @@
 //! Extremes of the parameters: inside the stated range every run finishes, beyond it a run finishes or says why it stopped.
 
+use std::cell::Cell;
+
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
+use proptest::test_runner::{RngSeed, TestRunner};
 use topo_core::{Interrupt, StopReason};
 use topo_rod::{
     Accuracy, ChargeSettings, ContactParameters, CutSite, Discharge, DischargeSettings,
@@ -70,7 +72,7 @@ impl Case {
         let charged = battery.charge(&charge, &Interrupt::new()).unwrap();
         self.judge(&charged.record().report.stop, "charging");
         assert!(
-            charged.record().report.link_drift.unwrap() < 1e-8,
+            charged.record().report.link_drift.unwrap() < 1e-10,
             "{self:?}"
         );
         if !charged.record().report.stop.is_success() {
@@ -324,13 +326,14 @@ fn law_stiff_strands_do_not_bounce() {
     }
 }
 
-/// Any number at all: ordinary, extreme, zero, negative, infinite or NaN.
-fn any_number() -> impl Strategy<Value = f64> {
+/// A number that is mostly in a range, and else anything: negative, tiny, huge, zero, infinite or NaN.
+fn number(range: std::ops::Range<f64>) -> impl Strategy<Value = f64> {
     prop_oneof![
-        4 => -5.0..100.0f64,
-        2 => prop::num::f64::NORMAL,
+        40 => range,
+        1 => prop::num::f64::NORMAL,
         1 => prop::num::f64::ANY,
         1 => Just(0.0),
+        1 => -5.0..100.0f64,
     ]
 }
 
@@ -345,19 +348,22 @@ fn any_reading() -> impl Strategy<Value = Reading> {
 
 prop_compose! {
     fn any_parameters()(
-        numbers in prop::array::uniform5(any_number()),
+        slenderness in number(5.0..100.0),
+        twist_ratio in number(0.1..2.0),
+        stretch_ratio in number(0.5..1000.0),
+        stiffness in number(5.0..500.0),
+        ratio in number(0.0..10.0),
         reading in any_reading(),
-        n_edges in 0usize..80,
-        twist in prop::option::of(any_number()),
+        n_edges in 4usize..80,
+        twist in prop::option::of(number(-4.0..4.0)),
         has_contact in any::<bool>(),
         has_friction in any::<bool>(),
         range in prop_oneof![
             Just(FrictionRange::Reading),
             Just(FrictionRange::Contact),
-            any_number().prop_map(FrictionRange::TimesContact),
+            number(0.5..2.0).prop_map(FrictionRange::TimesContact),
         ],
     ) -> RodParameters {
-        let [slenderness, twist_ratio, stretch_ratio, stiffness, ratio] = numbers;
         RodParameters {
             slenderness,
             reading,
@@ -410,23 +416,48 @@ fn survives(parameters: &RodParameters, accuracy: &Accuracy, knotted: bool) -> b
     true
 }
 
-proptest! {
-    #![proptest_config(ProptestConfig { cases: 1000, failure_persistence: None, rng_seed: RngSeed::Fixed(14), ..ProptestConfig::default() })]
-
-    /// No number in the parameters makes a rod panic, give NaN or never end.
-    #[test]
-    fn law_any_parameters_are_refused_or_run(
-        parameters in any_parameters(),
-        tolerance in any_number(),
-        skin in any_number(),
-        gamma in any_number(),
-        knotted in any::<bool>(),
-    ) {
-        let wild = Accuracy { tolerance, skin, gamma, max_steps: 60, ..Default::default() };
-        let tame = Accuracy { max_steps: 60, ..Default::default() };
-        survives(&parameters, &wild, knotted);
-        survives(&parameters, &tame, knotted);
+fn config(cases: u32) -> ProptestConfig {
+    ProptestConfig {
+        cases,
+        failure_persistence: None,
+        rng_seed: RngSeed::Fixed(14),
+        ..ProptestConfig::default()
     }
+}
+
+prop_compose! {
+    fn any_accuracy()(
+        tolerance in number(1e-5..0.1),
+        skin in number(0.05..2.0),
+        gamma in number(0.25..2.0),
+    ) -> Accuracy {
+        Accuracy { tolerance, skin, gamma, max_steps: 60, ..Default::default() }
+    }
+}
+
+/// No number in the parameters makes a rod panic, give NaN or never end; and many of the draws are rods that run.
+#[test]
+fn law_any_parameters_are_refused_or_run() {
+    let (n_ran, n_refused) = (Cell::new(0), Cell::new(0));
+    let drawn = (any_parameters(), any_accuracy(), any::<bool>());
+    let done = TestRunner::new(config(600)).run(&drawn, |(parameters, accuracy, knotted)| {
+        let count = if survives(&parameters, &accuracy, knotted) {
+            &n_ran
+        } else {
+            &n_refused
+        };
+        count.set(count.get() + 1);
+        Ok(())
+    });
+    println!("{} ran, {} refused", n_ran.get(), n_refused.get());
+    if let Err(failed) = done {
+        panic!("{failed}");
+    }
+    assert!(n_ran.get() > 200 && n_refused.get() > 100);
+}
+
+proptest! {
+    #![proptest_config(config(600))]
 
     /// Numbers that are in range are accepted and run.
     #[test]

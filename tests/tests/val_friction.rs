@@ -1,4 +1,4 @@
-//! Contact friction of two straight strands against the published integral, and the mobility against its own equations.
+//! Contact and its friction of two straight strands against their integrals, and the mobility against its own equations.
 
 use std::f64::consts::{FRAC_PI_3, PI};
 
@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 use topo_core::Model;
 use topo_rod::friction::{Friction, friction_form};
 use topo_rod::{ContactParameters, FrictionParameters, RodState};
-use topo_tests::curves::polyline;
+use topo_tests::curves::{closed, polyline};
 use topo_tests::run::Setup;
 
 type V = Vector3<f64>;
@@ -114,6 +114,39 @@ fn val_friction_of_two_sliding_rods_matches_the_integral() {
         }
         let power = friction_form(&couplings, &flat, &flat, n);
         assert!(power >= 0.999 * integral * speed, "power {power}");
+    }
+}
+
+/// Two strands that cross at a right angle at the distance d, the inflections of a wide figure of eight:
+///
+/// ```math
+/// e = ∬ V(r) ds ds' = 2π ∫_d^{d_c} V(r) r dr = π k_c d_c⁴ [ln r + 2 d_c/r − d_c²/2r²]_d^{d_c},   k_c = 20
+/// ```
+#[test]
+fn val_contact_of_two_crossing_rods_matches_the_integral() {
+    for (gap, diameter) in [(1.6, 2.0), (1.9, 2.0), (1.3, 1.6)] {
+        let curve = closed(8000, |u| {
+            V::new(
+                200.0 * u.sin(),
+                200.0 * u.sin() * u.cos(),
+                0.5 * gap * u.cos(),
+            )
+        });
+        let curve = curve.resampled(8000).unwrap();
+        let state = RodState::new(&curve, curve.length(), 0.0).unwrap();
+        let mut setup = Setup::bare(1e-3);
+        setup.parameters.contact = Some(ContactParameters::default());
+        setup.tube.contact_diameter = diameter;
+        let mut model = setup.model(&state);
+        let energies = model.energies(&state).unwrap();
+        let [_, _, found] = energies[..] else {
+            panic!("bend, stretch and contact: {energies:?}");
+        };
+        let primitive = |r: f64| r.ln() + 2.0 * diameter / r - 0.5 * (diameter / r).powi(2);
+        let integral = PI * 20.0 * diameter.powi(4) * (primitive(diameter) - primitive(gap));
+        let error = (found / integral - 1.0).abs();
+        println!("contact at {gap} of {diameter}: {found:.6} of {integral:.6}, off by {error:.1e}");
+        assert!(error < 5e-3, "off by {error:.1e}");
     }
 }
 

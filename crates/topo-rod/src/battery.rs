@@ -257,3 +257,6 @@ impl RodSimulation {
         on_either!(self, s => s.into_parts().1)
     }
 }
+
+#[cfg(test)]
+mod tests;

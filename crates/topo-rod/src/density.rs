@@ -43,3 +43,6 @@ pub fn smoothed_density(density: &[f64], rest_length: f64, closed: bool) -> Vec<
         })
         .collect()
 }
+
+#[cfg(test)]
+mod tests;

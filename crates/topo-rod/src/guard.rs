@@ -136,11 +136,12 @@ pub(crate) fn certify(
     };
     // neighbours along the rod, which the contact list leaves out
     let joined = from.is_closed() || pairs.is_cyclic();
+    let farthest = if joined { n_edges / 2 } else { n_edges };
     let width = ((pairs.window().outer() / from.rest_length())
         .min(n_edges as f64)
         .ceil() as usize
         + 1)
-    .min(n_edges / 2);
+    .min(farthest);
     for i in 0..n_edges {
         for k in 2..=width {
             let j = i + k;
@@ -185,48 +186,4 @@ fn edges_at(state: &RodState, i: usize) -> impl Iterator<Item = usize> + '_ {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Steps that each rise by all they may, and fall back: the cycle of a bouncing strand.
-    fn sum_of_rises(guards: &Guards, energy: f64) -> f64 {
-        let mut budget = RiseBudget::new(energy);
-        let mut sum = 0.0;
-        for _ in 0..10_000 {
-            let rise = budget.allowed(guards, energy);
-            budget.book(rise);
-            budget.book(-rise);
-            sum += rise;
-        }
-        sum / energy
-    }
-
-    #[test]
-    fn rises_cannot_add_up_beyond_their_limit() {
-        let guards = Guards::default();
-        let sum = sum_of_rises(&guards, 3.0);
-        assert!(sum > 0.99e-3 && sum < 1.000_001e-3, "{sum:e}");
-        // with the limit of single steps alone, they would
-        let single = Guards {
-            energy_rise_in_all: f64::INFINITY,
-            ..guards
-        };
-        assert!(sum_of_rises(&single, 3.0) > 0.5);
-    }
-
-    #[test]
-    fn a_step_may_rise_by_its_own_limit_while_little_is_spent() {
-        let guards = Guards::default();
-        let mut budget = RiseBudget::new(2.0);
-        assert_eq!(budget.allowed(&guards, 1.0), 1e-4);
-        assert_eq!(budget.allowed(&guards, 0.1), 1e-5);
-        budget.book(1e-3);
-        assert!((budget.allowed(&guards, 2.0) - 1e-4).abs() < 1e-12);
-        // rounding is no rise, even where nothing is left or nothing is stored
-        assert!(budget.allowed(&guards, 0.0) > 0.0);
-        let mut driven = RiseBudget::new(0.0);
-        assert_eq!(driven.allowed(&guards, 0.0), 0.0);
-        driven.widen(5.0);
-        assert_eq!(driven.allowed(&guards, 1.0), 1e-4);
-    }
-}
+mod tests;

@@ -247,3 +247,6 @@ impl Accuracy {
         Ok(self)
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -263,3 +263,6 @@ fn spherical_area(a: &Vector3<f64>, b: &Vector3<f64>, c: &Vector3<f64>) -> f64 {
         .dot(&b.cross(c))
         .atan2(1.0 + a.dot(b) + b.dot(c) + c.dot(a))
 }
+
+#[cfg(test)]
+mod tests;

@@ -399,6 +399,20 @@ mod tests {
         assert_eq!(run(Some(0.0)).1, None);
     }
 
+    /// Half of 4 = 1 + 1 + 2 is gone when the stretch is, at 1 T_0; what contact holds does not count.
+    #[test]
+    fn val_released_shares_count_bend_twist_and_stretch() {
+        let parts = ["bend", "twist", "stretch", "contact"];
+        let mut curve = topo_core::DischargeCurve::new(parts, Vec::<String>::new());
+        curve.push(0.0, &[1.0, 1.0, 2.0, 50.0], &[]).unwrap();
+        curve.push(1.0, &[1.0, 1.0, 0.0, 40.0], &[]).unwrap();
+        curve.push(2.0, &[0.0, 1.0, 0.0, 40.0], &[]).unwrap();
+        curve.push(3.0, &[0.0, 0.0, 0.0, 40.0], &[]).unwrap();
+        let times = DischargeTimes::of(&curve, &ELASTIC, 4.0, &[0.5, 0.75]);
+        assert_eq!(times.at(0.5).unwrap().value, 1.0);
+        assert_eq!(times.at(0.75).unwrap().value, 2.0);
+    }
+
     #[test]
     fn identities_of_chiral_and_untwisted_cases_know_of_one_image() {
         let table = KnotTable::builtin();

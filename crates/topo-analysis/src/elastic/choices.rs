@@ -170,3 +170,37 @@ impl Preset {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use topo_rod::cut_candidates;
+
+    use super::*;
+
+    /// Maxima within 3 % of the largest count as ties, as the published densities of 7_4 (1.5 %) do.
+    #[test]
+    fn val_near_ties_are_within_three_per_cent() {
+        let mut density = vec![1.0; 200];
+        for (vertex, height) in [(20, 3.0), (60, 2.92), (100, 2.955), (140, 2.9), (180, 2.2)] {
+            density[vertex] = height;
+        }
+        let ties = cut_candidates(&density, 0.25, NEAR_TIE);
+        let vertices: Vec<usize> = ties.iter().map(|c| c.vertex).collect();
+        assert_eq!(vertices, [20, 100, 60]);
+    }
+
+    #[test]
+    fn choices_of_cuts_are_read_and_written() {
+        for (text, cuts) in [
+            ("argmax", Cuts::Argmax),
+            ("near-ties", Cuts::NearTies),
+            ("all:12", Cuts::All(12)),
+        ] {
+            assert_eq!(Cuts::try_from(text.to_owned()), Ok(cuts));
+            assert_eq!(String::from(cuts), text);
+        }
+        for text in ["", "all", "all:0", "all:10001", "ties"] {
+            assert!(Cuts::try_from(text.to_owned()).is_err(), "{text}");
+        }
+    }
+}

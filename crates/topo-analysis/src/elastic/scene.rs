@@ -211,5 +211,14 @@ mod tests {
             .unwrap();
         assert_eq!(cases.len(), 238);
         assert_eq!(cases[8].name(), "3_1_twist+0.00_shrunk_n200");
+        // 14 knots at θ'h = −2, −1.75, ..., 2, of the published material
+        let twists = cases.iter().map(|case| case.rod.twist.unwrap());
+        let quarters = (0..238).map(|k| f64::from(k % 17 - 8) / 4.0);
+        assert!(twists.eq(quarters));
+        let published = |case: &ElasticCase| RodParameters {
+            twist: case.rod.twist,
+            ..RodParameters::default()
+        };
+        assert!(cases.iter().all(|case| case.rod == published(case)));
     }
 }

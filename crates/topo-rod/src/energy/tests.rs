@@ -5,6 +5,8 @@ use topo_core::{Polyline, finite_difference_gradient};
 
 use super::*;
 
+mod values;
+
 /// A crumpled curve with strands in contact, stretched and twisted unevenly.
 fn crumpled(closed: bool) -> RodState {
     let n = 40;
