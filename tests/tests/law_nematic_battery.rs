@@ -7,6 +7,7 @@ use topo_nematic::{
     NematicState, Precision, Progress, RunHooks, SurfacePattern, SwitchSettings, SwitchTarget,
     Threads,
 };
+use topo_tests::threads::on_threads;
 
 fn small(charge: i32) -> NematicParameters {
     NematicParameters {
@@ -101,21 +102,35 @@ fn law_discharge_times_converge_with_the_tolerance() {
 #[test]
 fn law_threads_and_resumed_runs_give_the_same_bits() {
     let one = charge_of(&small(2), &NematicAccuracy::default());
-    let all = charge_of(
-        &small(2),
-        &NematicAccuracy {
-            threads: Threads::All,
-            ..Default::default()
-        },
-    );
-    assert_eq!(one.state(), all.state());
     let settings = DischargeSettings {
         until_released: 0.9,
         ..Default::default()
     };
     let whole = discharge_of(&one, SwitchTarget::default(), None, &settings);
-    let shared = discharge_of(&all, SwitchTarget::default(), None, &settings);
-    assert_eq!(whole.state, shared.state);
+    let flowing = DischargeSettings {
+        until_released: 0.5,
+        flow: Some(FlowParameters::default()),
+        ..Default::default()
+    };
+    let moved = discharge_of(&one, SwitchTarget::default(), None, &flowing);
+    // Pools of a given size, so that work is shared out on a machine of one processor as well.
+    for n_threads in [1, 2, 3] {
+        let (all, shared, shared_moved) = on_threads(n_threads, || {
+            let accuracy = NematicAccuracy {
+                threads: Threads::All,
+                ..Default::default()
+            };
+            let all = charge_of(&small(2), &accuracy);
+            let shared = discharge_of(&all, SwitchTarget::default(), None, &settings);
+            let moved = discharge_of(&all, SwitchTarget::default(), None, &flowing);
+            (all, shared, moved)
+        });
+        assert_eq!(one.state(), all.state(), "{n_threads}");
+        assert_eq!(whole.state, shared.state, "{n_threads}");
+        assert_eq!(whole.record.curve, shared.record.curve, "{n_threads}");
+        assert_eq!(moved.state, shared_moved.state, "{n_threads}");
+        assert_eq!(moved.record.curve, shared_moved.record.curve, "{n_threads}");
+    }
 
     // The same run, stopped after some steps and resumed from its checkpoint.
     let folder = tempfile::tempdir().unwrap();

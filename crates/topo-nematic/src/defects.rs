@@ -425,6 +425,56 @@ mod tests {
         }
     }
 
+    /// An arch in the plane y = 8: its feet stand on the upper wall, +1/2 on one side and -1/2 on the other, and meet at z = 4.
+    fn arch() -> NematicState {
+        let grid = Grid::new([24, 16, 18], 1.0, [Faces::Wall; 3]).unwrap();
+        NematicState::from_fn(grid, None, |[x, y, z]| {
+            let half = 1.7 * (z - 4.0).max(0.0).sqrt();
+            let angle = |foot: f64| (y - 8.1).atan2(x - foot);
+            let turn = 0.5 * (angle(12.2 - half) - angle(12.2 + half));
+            let nearest = (x - 12.2).abs() - half;
+            let core = nearest.hypot(y - 8.1) + (4.0 - z).max(0.0);
+            uniaxial(0.5 * (core / 2.0).tanh(), [turn.cos(), turn.sin(), 0.0])
+        })
+        .unwrap()
+    }
+
+    #[test]
+    fn an_arch_is_one_open_line_of_both_kinds() {
+        // The lowest pierced squares are those of its crown: a line begun there would be cut in two.
+        let lines = defect_lines(&arch());
+        assert_eq!(lines.len(), 1);
+        let line = &lines[0];
+        assert!(!line.closed);
+        let (first, last) = (0, line.points.len() - 1);
+        let feet = [line.points[first], line.points[last]];
+        assert!(feet.iter().all(|p| p[2] > 16.5), "{feet:?}");
+        let apart = (feet[0][0] - feet[1][0]).abs();
+        assert!((apart - 2.0 * 1.7 * 13.0_f64.sqrt()).abs() < 1.0, "{apart}");
+        let kinds = [first, last].map(|i| line.cross_section(i));
+        let both = [CrossSection::PlusHalf, CrossSection::MinusHalf];
+        assert!(kinds == both || kinds == [both[1], both[0]], "{kinds:?}");
+        let lowest = |i: &usize| line.points[*i][2];
+        let crown = (first..=last).min_by(|a, b| lowest(a).total_cmp(&lowest(b)));
+        let crown = crown.unwrap();
+        assert_eq!(line.cross_section(crown), CrossSection::Twisted);
+        assert!((lowest(&crown) - 4.0).abs() < 1.0, "{}", lowest(&crown));
+    }
+
+    #[test]
+    fn smoothing_is_binomial_and_leaves_ends_and_straight_lines() {
+        let peak = |at: usize| -> Vec<f64> { (0..7).map(|i| f64::from(i == at)).collect() };
+        // Two passes of 1 2 1 are 1 4 6 4 1, around the seam as well.
+        let weights = [6.0, 4.0, 1.0, 0.0, 0.0, 1.0, 4.0].map(|w| w / 16.0);
+        assert_eq!(smoothed_numbers(&peak(0), true), weights);
+        let mut turned = weights;
+        turned.rotate_right(5);
+        assert_eq!(smoothed_numbers(&peak(5), true), turned);
+        let line: Vec<f64> = (0..9).map(|i| 0.5 * f64::from(i) - 1.0).collect();
+        assert_eq!(smoothed_numbers(&line, false), line);
+        assert_eq!(smoothed_numbers(&[3.0, 7.0], true), [3.0, 7.0]);
+    }
+
     #[test]
     fn a_uniform_field_has_no_lines() {
         let grid = Grid::new([8; 3], 1.0, [Faces::Periodic; 3]).unwrap();

@@ -269,7 +269,9 @@ mod tests {
                 assert!(m.checked().is_err(), "{change}");
             }
         }
-        assert!(with(|m| m.second_elastic_constant = Some(-0.7)).is_err());
+        // Positive definite down to L_2 = -3 L/5.
+        assert!(with(|m| m.second_elastic_constant = Some(-0.601)).is_err());
+        assert!(with(|m| m.second_elastic_constant = Some(-0.599)).is_ok());
         assert!(
             with(|m| m.b = 2.34).is_ok(),
             "a positive B has a smaller S_eq"

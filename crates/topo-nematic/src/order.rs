@@ -70,6 +70,46 @@ mod tests {
     use crate::{Faces, Grid, Particle};
 
     #[test]
+    fn a_tilt_between_plates_has_its_mean_and_its_azimuth() {
+        // Director (sin t cos a, sin t sin a, cos t), t = t0 cos(pi z/d) from the middle: means by quadrature.
+        let (n, tilt, azimuth) = (64, 0.3_f64, -2.0_f64);
+        let faces = [Faces::Periodic, Faces::Periodic, Faces::Wall];
+        let grid = Grid::new([4, 4, n], 0.5, faces).unwrap();
+        let angle = |z: f64| tilt * (std::f64::consts::PI * (z / 32.0 - 0.5)).cos();
+        let state = NematicState::from_fn(grid, None, |[_, _, z]| {
+            let (sin, cos) = angle(z).sin_cos();
+            uniaxial(0.53, [sin * azimuth.cos(), sin * azimuth.sin(), cos])
+        })
+        .unwrap();
+        let found = order_parameter(&state, 0.53);
+        // By Simpson's rule on a grid of its own.
+        let mean = |f: &dyn Fn(f64) -> f64| {
+            let weight = |k: u32| match k {
+                0 | 600 => 1.0,
+                _ if k % 2 == 1 => 4.0,
+                _ => 2.0,
+            };
+            let at = |k: u32| weight(k) * f(angle(f64::from(k) * 32.0 / 600.0));
+            (0..=600).map(at).sum::<f64>() / 1800.0
+        };
+        let (q_xz, n_x) = (mean(&|t| t.sin() * t.cos()), mean(&f64::sin));
+        assert!(
+            (found.magnitude() / q_xz - 1.0).abs() < 1e-3,
+            "{found:?} {q_xz}"
+        );
+        assert!(
+            (found.director_magnitude() / n_x - 1.0).abs() < 1e-3,
+            "{found:?} {n_x}"
+        );
+        assert!((found.azimuth() - azimuth).abs() < 1e-12);
+        assert!((found.director[1].atan2(found.director[0]) - azimuth).abs() < 1e-12);
+        // An order parameter is in units of the equilibrium order; without order there is none.
+        let half = order_parameter(&state, 0.265);
+        assert!((half.magnitude() / found.magnitude() - 2.0).abs() < 1e-12);
+        assert_eq!(order_parameter(&state, 0.0).tilt, [0.0; 2]);
+    }
+
+    #[test]
     fn only_the_fluid_is_averaged() {
         let grid = Grid::new([12; 3], 1.0, [Faces::Periodic; 3]).unwrap();
         let particle = Particle::new([6.0; 3], 3.0).unwrap();

@@ -42,7 +42,7 @@ impl Ring {
 /// poles, at the edge of the cell, everywhere.
 ///
 /// # Validation
-/// `only_low_order_around_the_particle_is_a_ring`
+/// `only_low_order_around_the_particle_is_a_ring`, `undulations_of_a_ring_have_their_amplitudes_modes_and_place`
 pub fn ring(state: &NematicState, threshold: f64) -> Option<Ring> {
     let sectors = sectors(state, threshold)?;
     let n = N_SECTORS as f64;
@@ -234,6 +234,41 @@ mod tests {
         let one_edge = move |p: [f64; 3]| edge(p) && p[2] > 0.0;
         assert_eq!(found(one_edge), None, "edge of one plate");
         assert_eq!(found(|_| true), None, "no order at all");
+    }
+
+    #[test]
+    fn undulations_of_a_ring_have_their_amplitudes_modes_and_place() {
+        // A tube around z = 1 + 0.9 cos(2φ + 0.4) + 0.4 sin(5φ) at 12 from the axis, its order rising from 0 in the middle; h = 0.5.
+        let faces = [Faces::Wall, Faces::Wall, Faces::Wall];
+        let grid = Grid::new([80, 80, 56], 0.5, faces).unwrap();
+        let particle = Particle::central(&grid, 10.0).unwrap();
+        let state = NematicState::from_fn(grid, Some(particle), |p| {
+            let [x, y, z] = particle.offset(&grid, p);
+            let azimuth = y.atan2(x);
+            let height = 1.0 + 0.9 * (2.0 * azimuth + 0.4).cos() + 0.4 * (5.0 * azimuth).sin();
+            let core = (x.hypot(y) - 12.0).hypot(z - height);
+            uniaxial((0.2 * core).min(0.5), [0.0, 0.0, 1.0])
+        });
+        let state = state.unwrap();
+        let line = ring_line(&state, 0.35).unwrap();
+        assert_eq!(line.len(), 128);
+        for (k, [x, y, z]) in line.into_iter().enumerate() {
+            // One point in the middle of each sector.
+            let azimuth = std::f64::consts::TAU * (k as f64 + 0.5) / 128.0;
+            assert!((y.atan2(x).rem_euclid(std::f64::consts::TAU) - azimuth).abs() < 1e-9);
+            let height = 1.0 + 0.9 * (2.0 * azimuth + 0.4).cos() + 0.4 * (5.0 * azimuth).sin();
+            assert!((z - height).abs() < 0.15, "{azimuth}: {z} {height}");
+        }
+        let ring = ring(&state, 0.35).unwrap();
+        assert_eq!(ring.mode(), 2);
+        assert_eq!(ring.amplitude(), ring.modes[1]);
+        assert!((ring.modes[1] - 0.9).abs() < 0.02, "{:?}", ring.modes);
+        assert!((ring.modes[4] - 0.4).abs() < 0.02, "{:?}", ring.modes);
+        for (k, mode) in ring.modes.iter().enumerate() {
+            assert!(k == 1 || k == 4 || *mode < 0.03, "{k}: {mode}");
+        }
+        assert!((ring.height - 1.0).abs() < 0.02, "{}", ring.height);
+        assert!((ring.radius - 12.0).abs() < 0.1, "{}", ring.radius);
     }
 
     #[test]

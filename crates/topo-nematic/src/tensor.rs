@@ -176,13 +176,21 @@ mod tests {
         }
         assert_eq!(order_and_director(&[0.0; 5]), (0.0, [0.0, 0.0, 1.0]));
         assert!(order_and_director(&[f64::NAN; 5]).0.is_nan());
-        // An oblate tensor has no unique director, but a unit one.
-        let (_, n) = order_and_director(&uniaxial(-0.3, [0.0, 0.6, 0.8]));
-        assert_relative_eq!(
-            n.iter().map(|x| x * x).sum::<f64>(),
-            1.0,
-            max_relative = 1e-12
-        );
+        // An oblate tensor has no unique director, but a unit one across its axis, with half of |S| as its order.
+        let axes = [
+            [0.0, 0.6, 0.8],
+            [1.0, 0.0, 0.0],
+            [0.0, 1.0, 0.0],
+            [0.0, 0.0, 1.0],
+        ];
+        for axis in axes {
+            let (order, n) = order_and_director(&uniaxial(-0.3, axis));
+            // A double root is known to the square root of rounding.
+            assert_relative_eq!(order, 0.15, max_relative = 1e-7);
+            let dot = |a: [f64; 3]| n.iter().zip(a).map(|(x, y)| x * y).sum::<f64>();
+            assert_relative_eq!(dot(n), 1.0, max_relative = 1e-12);
+            assert!(dot(axis).abs() < 1e-6, "{axis:?}: {n:?}");
+        }
     }
 
     #[test]

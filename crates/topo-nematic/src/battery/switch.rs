@@ -98,6 +98,7 @@ impl ChargedNematic {
                 self.energy().total(),
                 &mut state,
             )
+            .energy
         };
         Ok(SwitchedNematic {
             charged: self.clone(),
@@ -182,16 +183,31 @@ struct Extension {
 /// Steepest extension tried, as a multiple of the linear one.
 const STEEPEST: f64 = 3.0;
 
-/// Gives values to the cells inside the sphere that `kernel` holds active, so that the energy is `goal` if possible; gives the energy.
+/// A field that was continued into the sphere.
+pub(crate) struct Extended {
+    /// Its energy, in L xi_N.
+    pub energy: f64,
+    /// Slope from the surface inwards, in multiples of that outside: near 1 where apertures and volumes are right.
+    #[cfg_attr(
+        not(test),
+        expect(dead_code, reason = "what the tests of the switch look at")
+    )]
+    pub steepness: f64,
+}
+
+/// Gives values to the cells inside the sphere that `kernel` holds active, so that the energy is `goal` if possible.
 ///
 /// `anchoring` is what has held the surface so far.
+///
+/// # Validation
+/// `the_field_goes_on_into_the_sphere_about_as_steeply_as_outside`
 pub(crate) fn extend_into_cut_cells(
     battery: &NematicBattery,
     anchoring: Anchoring,
     kernel: &Kernel<f64>,
     goal: f64,
     state: &mut NematicState,
-) -> f64 {
+) -> Extended {
     let extensions = extensions(battery, anchoring, kernel, state);
     let n = state.grid().n_cells();
     let mut q = vec![0.0; kernel.array_length()];
@@ -233,7 +249,10 @@ pub(crate) fn extend_into_cut_cells(
             q[c * n + e.cell] = e.on_surface[c] + steepness * e.inwards[c];
         }
     }
-    start
+    Extended {
+        energy: start,
+        steepness,
+    }
 }
 
 /// Values and slopes of the cells inside the sphere, from the links that cut its surface.
@@ -301,3 +320,6 @@ fn extensions(
     }
     extensions
 }
+
+#[cfg(test)]
+mod tests;

@@ -196,25 +196,31 @@ fn smooth_rate(field: &dyn Fn(f64, f64) -> [f64; 5], [x, z]: [f64; 2], chi: f64)
     ]
 }
 
-fn battery(n_threads: usize, parameters: &FlowParameters) -> (FlowCoupling, Vec<f64>, Vec<f64>) {
-    let grid = Grid::new(
-        [16, 16, 20],
-        1.0,
-        [Faces::Periodic, Faces::Periodic, Faces::Wall],
-    )
-    .unwrap();
-    let particle = Particle::central(&grid, 4.0).unwrap();
-    let pool = rayon::ThreadPoolBuilder::new()
+/// A pool of so many threads, whatever the machine has.
+fn pool(n_threads: usize) -> rayon::ThreadPool {
+    rayon::ThreadPoolBuilder::new()
         .num_threads(n_threads)
         .build()
-        .unwrap();
+        .unwrap()
+}
+
+/// The cell of a battery of these tests.
+fn colloid() -> (Grid, Particle) {
+    let faces = [Faces::Periodic, Faces::Periodic, Faces::Wall];
+    let grid = Grid::new([16, 16, 20], 1.0, faces).unwrap();
+    (grid, Particle::central(&grid, 4.0).unwrap())
+}
+
+fn battery(n_threads: usize, parameters: &FlowParameters) -> (FlowCoupling, Vec<f64>, Vec<f64>) {
+    let (grid, particle) = colloid();
     let n = grid.n_cells();
     // Anything may lie inside the particle.
     let mut q = noise(5 * n, 11);
     let inside = grid.index([8, 8, 10]);
     q[inside] = f64::NAN;
     let h = noise(5 * n, 12);
-    pool.install(|| {
+    pool(n_threads).install(|| {
+        assert_eq!(rayon::current_num_threads(), n_threads);
         let mut flow =
             FlowCoupling::new(&grid, Some(&particle), &Material::default(), parameters).unwrap();
         flow.update(&q, &h).unwrap();
@@ -246,32 +252,39 @@ fn power_is_what_the_director_loses_around_a_particle() {
     );
     // What the boundary residual took is all that separates power and dissipation.
     assert!(
-        (flow.dissipation() / flow.power() - 1.0).abs() < 0.02 && flow.boundary_residual() < 0.01
+        (flow.dissipation() / flow.power() - 1.0).abs() < 0.02
+            && (1e-6..0.01).contains(&flow.boundary_residual())
     );
-    assert!(
-        flow.n_bytes() as u64
-            <= FlowCoupling::n_bytes_estimate(
-                &Grid::new([16, 16, 20], 1.0, [Faces::Periodic; 3]).unwrap(),
-                true,
-                &parameters
-            ) * 3
-                / 2
-    );
+}
+
+#[test]
+fn estimated_bytes_are_within_a_tenth_on_any_number_of_threads() {
+    let (parameters, material) = (FlowParameters::default(), Material::default());
+    let faces = [Faces::Periodic, Faces::Periodic, Faces::Wall];
+    let grid = Grid::new([96, 96, 72], 1.0, faces).unwrap();
+    let particle = Particle::central(&grid, 16.0).unwrap();
+    for n_threads in [1, 2, 3] {
+        let [held, estimate] = pool(n_threads).install(|| {
+            let flow = FlowCoupling::new(&grid, Some(&particle), &material, &parameters).unwrap();
+            let estimate = FlowCoupling::n_bytes_estimate(&grid, true, &parameters);
+            [flow.n_bytes() as f64, estimate as f64]
+        });
+        let ratio = held / estimate;
+        assert!((0.9..1.1).contains(&ratio), "{n_threads}: {ratio}");
+    }
 }
 
 #[test]
 fn bits_do_not_depend_on_the_number_of_threads() {
     let parameters = FlowParameters::default();
     let (one, _, rate_one) = battery(1, &parameters);
-    let (three, _, rate_three) = battery(3, &parameters);
-    assert_eq!(one.velocity(), three.velocity());
-    assert_eq!(one.power().to_bits(), three.power().to_bits());
-    assert!(
-        rate_one
-            .iter()
-            .zip(&rate_three)
-            .all(|(a, b)| a.to_bits() == b.to_bits())
-    );
+    for n_threads in [2, 3] {
+        let (several, _, rate) = battery(n_threads, &parameters);
+        assert_eq!(one.velocity(), several.velocity());
+        assert_eq!(one.power().to_bits(), several.power().to_bits());
+        let mut pairs = rate_one.iter().zip(&rate);
+        assert!(pairs.all(|(a, b)| a.to_bits() == b.to_bits()));
+    }
 }
 
 #[test]
@@ -327,4 +340,31 @@ fn walled_sides_take_the_sparse_solver() {
     );
     assert!((flow.dissipation() / flow.power() - 1.0).abs() < 1e-12);
     assert!(flow.counters().n_iterations > 10);
+}
+
+#[test]
+fn a_sheared_fluid_has_its_velocity_and_its_curl() {
+    // Plates moving along x and y: u = (0.3, -0.2, 0) (2z/d - 1), curl u = (0.2, 0.3, 0) 2/d, exact on any grid.
+    let faces = [Faces::Periodic, Faces::Periodic, Faces::Wall];
+    let grid = Grid::new([6, 4, 10], 0.5, faces).unwrap();
+    let mut parameters = FlowParameters::default();
+    parameters.drive.wall_velocity[2] = [[-0.3, 0.2, 0.0], [0.3, -0.2, 0.0]];
+    let mut flow = FlowCoupling::new(&grid, None, &Material::default(), &parameters).unwrap();
+    let n = grid.n_cells();
+    let still = vec![0.0; 5 * n];
+    flow.update(&still, &still).unwrap();
+    let (velocity, curl) = (flow.centred_velocity(), flow.vorticity());
+    for cell in 0..n {
+        let share = 2.0 * grid.centre(place(&grid, cell))[2] / 5.0 - 1.0;
+        let exact = [0.3 * share, -0.2 * share, 0.0, 0.08, 0.12, 0.0];
+        let found = [&velocity, &curl].map(|v| [0, 1, 2].map(|axis| v[axis * n + cell]));
+        for (found, exact) in found.concat().iter().zip(exact) {
+            assert!((found - exact).abs() < 1e-9, "{cell}: {found} {exact}");
+        }
+    }
+    assert!(
+        (flow.max_speed() - 0.27 * 1.0).abs() < 1e-9,
+        "{}",
+        flow.max_speed()
+    );
 }

@@ -101,6 +101,11 @@ fn hessian_is_symmetric_and_the_same_for_any_number_of_threads() {
             (ab - ba).abs() < 1e-11 * ab.abs().max(inner(&a, &a)),
             "{ab} {ba}"
         );
-        assert_eq!(product(&kernel, &a), product(&all, &a), "{cells:?}");
+        for n_threads in [1, 2, 3] {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(n_threads);
+            let pool = pool.build().unwrap();
+            let shared = pool.install(|| product(&all, &a));
+            assert_eq!(product(&kernel, &a), shared, "{cells:?} {n_threads}");
+        }
     }
 }

@@ -432,7 +432,7 @@ impl<'a, T: Real> Advance<'a, T> {
 }
 
 /// Mean of a power that decays exponentially from one value to the other.
-fn mean_power(from: f64, to: f64) -> f64 {
+pub(super) fn mean_power(from: f64, to: f64) -> f64 {
     let ratio = (from / to).ln();
     if ratio.is_finite() && ratio.abs() > 1e-4 {
         (from - to) / ratio

@@ -2,12 +2,13 @@
 
 use std::f64::consts::PI;
 
-use topo_core::Rejection;
+use topo_core::{Interrupt, Rejection};
 
 use crate::battery::coupled_flow::CoupledFlow;
 use crate::stabilised::{Drift, Stabilised};
 use crate::{
-    FlowParameters, NematicBattery, NematicParameters, NematicState, SwitchSettings, SwitchTarget,
+    ChargeSettings, DischargeSettings, FlowParameters, FreeSurface, NematicBattery,
+    NematicParameters, NematicState, RunHooks, SurfacePattern, SwitchSettings, SwitchTarget,
     uniaxial,
 };
 
@@ -181,4 +182,86 @@ fn stiff_drifts_stay_stable() {
         );
         assert!(end < 1e-6 * start, "{largest} {ratio}: {start:e} {end:e}");
     }
+}
+
+/// A colloid of charge 2, charged well enough to be let go.
+fn charged() -> crate::ChargedNematic {
+    let parameters = NematicParameters {
+        radius: 6.0,
+        pattern: SurfacePattern::Charge(2),
+        ..Default::default()
+    };
+    let battery = NematicBattery::new(&parameters, &Default::default()).unwrap();
+    let settings = ChargeSettings {
+        tolerance: 1e-4,
+        order_tolerance: 1e-2,
+        ..Default::default()
+    };
+    let hooks = &mut RunHooks::new(&Interrupt::new());
+    battery.charge(&settings, hooks).unwrap()
+}
+
+#[test]
+fn flow_takes_what_the_energy_of_the_switched_surface_loses_by_it() {
+    // -dF/dt along what the flow does to Q, F being that of the surface after the switch, by differences; against f.u, which the
+    // ledger books. At once, and after a ramp: cells at the sphere then weigh otherwise than while charged.
+    let charged = charged();
+    for (surface, ramp) in [
+        (FreeSurface::CutCell, None),
+        (FreeSurface::Staircase, None),
+        (FreeSurface::CutCell, Some(0.5)),
+    ] {
+        let settings = SwitchSettings {
+            to: SwitchTarget::Free(surface),
+            ramp,
+        };
+        let switched = charged.switch(&settings).unwrap();
+        let after = charged.surface_after(&settings);
+        let kernel = charged
+            .battery
+            .kernel::<f64>(&after, charged.battery.accuracy().threads)
+            .without_gaps();
+        let mut errors = Vec::new();
+        let mut see = |sample: &crate::NematicSample,
+                       state: &NematicState,
+                       flow: Option<&crate::FlowCoupling>| {
+            let flow = flow.unwrap();
+            if sample.time < ramp.unwrap_or(0.0) {
+                return;
+            }
+            let mut rate = vec![0.0; state.q_tensor().len()];
+            flow.add_rate(state.q_tensor(), &mut rate);
+            let energy = |t: &[f64]| {
+                let moved: Vec<f64> = (state.q_tensor().iter().zip(&rate))
+                    .map(|(q, r)| q + t[0] * r)
+                    .collect();
+                kernel.energy(&moved).total()
+            };
+            let slope = topo_core::finite_difference_gradient(energy, &[0.0], 1e-2)[0];
+            errors.push(flow.power() / -slope - 1.0);
+        };
+        let discharge = DischargeSettings {
+            // no further than the first look after the switch or ramp
+            longest: (ramp.unwrap_or(0.0) + 1e-3) / charged.battery.diffusion_time(),
+            first_output: 1e-6,
+            outputs_per_decade: 1e5,
+            flow: Some(FlowParameters::default()),
+            ..Default::default()
+        };
+        let hooks = &mut RunHooks::new(&Interrupt::new()).with_samples(&mut see);
+        switched.discharge(&discharge, hooks).unwrap();
+        println!("{surface:?} {ramp:?}: {errors:?}");
+        assert!(errors.len() > 1 && errors.iter().all(|e| e.abs() < 1e-9));
+    }
+}
+
+#[test]
+fn mean_powers_are_those_of_exponential_decay() {
+    // The mean of exp(-t) over 0..1 and over 0..3; equal powers, and none at all, have themselves as their mean.
+    let mean = super::advance::mean_power;
+    for time in [1.0_f64, 3.0, 2e-4, 1e-6] {
+        let exact = -(-time).exp_m1() / time;
+        assert!((mean(1.0, (-time).exp()) - exact).abs() < 1e-8, "{time}");
+    }
+    assert_eq!([mean(2.5, 2.5), mean(0.0, 0.0)], [2.5, 0.0]);
 }
