@@ -179,11 +179,6 @@ fn agrees_with_independent_times(charge: i32) {
 }
 
 #[test]
-fn val_colloid_discharges_at_the_times_of_an_independent_run() {
-    agrees_with_independent_times(5);
-}
-
-#[test]
 #[ignore = "long: seven charges and discharges of 663 552 cells"]
 fn long_colloids_discharge_at_the_times_of_independent_runs() {
     for charge in 1..=7 {
