@@ -113,30 +113,27 @@ fn val_energies_of_a_ring() {
     assert!((twist.torque(0.3 * l0, l0) - 0.3 / (4.0 * 1.3)).abs() < 1e-15);
 }
 
-/// H u of the blocks, vertex-major.
-fn product(
-    stiffness: &Stiffness,
-    state: &RodState,
-    active: &[ActivePair],
-    u: &[Vector3<f64>],
-) -> Vec<Vector3<f64>> {
-    let n = state.n_vertices();
-    let mut out: Vec<_> = (0..n).map(|i| stiffness.diagonal[i] * u[i]).collect();
-    let mut couple = |i: usize, j: usize, block: &Matrix3<f64>| {
-        out[i] += block * u[j];
-        out[j] += block.transpose() * u[i];
-    };
-    for i in 0..n {
-        couple(i, (i + 1) % n, &stiffness.next[i]);
-        couple(i, (i + 2) % n, &stiffness.second[i]);
+impl Stiffness {
+    /// H u, vertex-major.
+    pub(crate) fn product(&self, active: &[ActivePair], u: &[Vector3<f64>]) -> Vec<Vector3<f64>> {
+        let n = u.len();
+        let mut out: Vec<_> = (0..n).map(|i| self.diagonal[i] * u[i]).collect();
+        let mut couple = |i: usize, j: usize, block: &Matrix3<f64>| {
+            out[i] += block * u[j];
+            out[j] += block.transpose() * u[i];
+        };
+        for i in 0..n {
+            couple(i, (i + 1) % n, &self.next[i]);
+            couple(i, (i + 2) % n, &self.second[i]);
+        }
+        for (pair, block) in active.iter().zip(&self.contact) {
+            couple(pair.i as usize, pair.j as usize, block);
+        }
+        for (i, j, block) in &self.further {
+            couple(*i as usize, *j as usize, block);
+        }
+        out
     }
-    for (pair, block) in active.iter().zip(&stiffness.contact) {
-        couple(pair.i as usize, pair.j as usize, block);
-    }
-    for (i, j, block) in &stiffness.further {
-        couple(*i as usize, *j as usize, block);
-    }
-    out
 }
 
 /// Largest difference of H u and minus the change of the force along u, relative.
@@ -173,7 +170,7 @@ fn error_of_stiffness(
         pairs: &pairs,
     };
     term.add_stiffness(at, &mut stiffness);
-    let found = product(&stiffness, state, pairs.active(), &u);
+    let found = stiffness.product(pairs.active(), &u);
     let size = found.iter().map(|v| v.norm()).fold(0.0, f64::max);
     assert!(size > 1e-3, "{} has no stiffness", term.name());
     let error = |i: usize| (found[i] + (ahead[i] - behind[i]) / (2.0 * by)).norm();
