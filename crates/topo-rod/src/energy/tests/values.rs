@@ -59,6 +59,30 @@ fn val_contact_law_at_given_distances() {
     }
 }
 
+/// The end of an open rod stands for half an edge, as do both of a cut one: 1.2 · 0.6 between an end and any other vertex.
+#[test]
+fn val_free_ends_count_half() {
+    let term = ContactEnergy {
+        stiffness: 20.0,
+        diameter: 2.0,
+    };
+    for (cut, weight) in [(5, 0.72), (25, 0.72), (15, 1.44)] {
+        let state = touching(1.6).cut_at(cut).unwrap();
+        let mut pairs = ContactPairs::new(1.7, 0.3);
+        pairs.set_cyclic(true);
+        pairs.update(&state);
+        let at = At {
+            state: &state,
+            geometry: &Geometry::new(&state),
+            pairs: &pairs,
+        };
+        // a vertex that was doubled touches twice
+        let twice = if weight < 1.0 { 2.0 } else { 1.0 };
+        let exact = twice * weight * 3.90625;
+        assert!((term.energy(at) / exact - 1.0).abs() < 1e-12);
+    }
+}
+
 /// η_f/η w w'/r³ below the range and nothing from there on: 0.1 · 1.44/1.6³ = 0.03515625.
 #[test]
 fn val_friction_at_given_distances() {
