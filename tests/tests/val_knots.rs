@@ -117,7 +117,7 @@ fn handedness(name: &str, n_edges: usize) -> [f64; 3] {
 #[test]
 fn val_figure_eight_does_not_see_the_sign_of_twist() {
     let found = handedness("4_1", 100);
-    assert!(found.iter().all(|d| *d < 1e-3), "{found:.1e?}");
+    assert!(found.iter().all(|d| *d < 1e-3), "{found:?}");
 }
 
 /// The same at the edges of the default preset. The tight 6_3 is not its mirror image, and from that one curve the energies do
@@ -126,7 +126,7 @@ fn val_figure_eight_does_not_see_the_sign_of_twist() {
 #[ignore = "long: 1 minute"]
 fn long_achiral_knots_do_not_see_the_sign_of_twist() {
     let found = handedness("4_1", 200);
-    assert!(found.iter().all(|d| *d < 1e-3), "{found:.1e?}");
+    assert!(found.iter().all(|d| *d < 1e-3), "{found:?}");
     for (found, seen) in handedness("6_3", 200).iter().zip([2.4e-3, 9.9e-4, 3.5e-4]) {
         let ratio = found / seen;
         assert!((0.5..2.0).contains(&ratio), "{found:.1e} of {seen:.1e}");

@@ -301,3 +301,6 @@ impl NewtonTwist {
         given.iter().for_each(|g| right[g.0] = g.1);
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -7,7 +7,7 @@ use topo_core::Interrupt;
 
 use super::record::{PARTS, Scales};
 use super::*;
-use crate::{ChargeSettings, Reading};
+use crate::{ChargeSettings, CutRod, Reading, cut_candidates};
 
 /// A right-handed trefoil on a torus; of tube, the thinner the torus the less.
 fn trefoil(minor: f64) -> Polyline {
@@ -91,4 +91,57 @@ fn val_reported_units_of_fifty_radii() {
     let mut sample = last.clone();
     sample.stored = [1.0, 2.0, 4.0, 8.0];
     assert_eq!(sample.elastic(), 7.0);
+}
+
+/// Two strands of edges of 0.5 that leave from a corner: the first along x so that its vertex `corner` is in the origin, the last
+/// vertex `gap` above that, and a wide bow between them.
+fn corner(corner: usize, gap: f64) -> RodState {
+    let first = (0..20).map(|i| Vector3::new(0.5 * (i as f64 - corner as f64), 0.0, 0.0));
+    let bow = [
+        [30.0, -30.0, 9.0],
+        [60.0, 0.0, 9.0],
+        [60.0, 60.0, 9.0],
+        [0.0, 60.0, 9.0],
+    ];
+    let last = (0..20)
+        .rev()
+        .map(|k| Vector3::new(0.0, gap + 0.5 * k as f64, 0.0));
+    let vertices = first.chain(bow.map(Vector3::from)).chain(last).collect();
+    let curve = Polyline::new(vertices, false).unwrap();
+    RodState::new(&curve, 0.5 * curve.n_edges() as f64, 0.0).unwrap()
+}
+
+/// Tips have parted when all pairs that the seam kept apart by less than the window, 3 or six edges, are farther apart than d.
+#[test]
+fn val_tips_part_when_all_pairs_of_the_seam_are_apart() {
+    let parted = |state: &RodState, d: f64| CutRod::tips_have_parted(state, d, 3.0);
+    for vertex in [0, 3, 6] {
+        let state = corner(vertex, 0.9);
+        assert!(!parted(&state, 0.95) && parted(&state, 0.85), "{vertex}");
+    }
+    // the seventh edge from the seam is a strand of its own: what counts is the sixth, √(0.25 + 0.81) = 1.03 away
+    assert!(parted(&corner(7, 0.9), 1.0) && !parted(&corner(7, 0.9), 1.05));
+    let ring = |n: usize| {
+        let u = |k: usize| TAU * k as f64 / n as f64;
+        let ring = (0..n).map(|k| Vector3::new(u(k).cos(), u(k).sin(), 0.0));
+        let curve = Polyline::new(ring.collect(), true).unwrap();
+        RodState::new(&curve, 0.5 * n as f64, 0.0)
+            .unwrap()
+            .cut_at(0)
+            .unwrap()
+    };
+    assert!(!parted(&ring(40), 0.1));
+    // on a rod this short all pairs are neighbours along the rod
+    assert!(parted(&ring(10), 0.1));
+}
+
+#[test]
+fn candidates_lie_at_their_vertices() {
+    let mut density = vec![1.0; 80];
+    density[20] = 2.0;
+    let found = cut_candidates(&density, 0.5, 0.0);
+    assert_eq!(
+        (found[0].vertex, found[0].at, found[0].density),
+        (20, 0.25, 2.0)
+    );
 }

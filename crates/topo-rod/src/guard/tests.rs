@@ -68,6 +68,8 @@ fn crossed(n: usize, closed: bool, i: usize, j: usize, rest: f64) -> RodState {
     vertices[(i + 1) % n] = centre + Vector3::x();
     vertices[j] = centre + Vector3::new(0.3, -1.0, gap);
     vertices[(j + 1) % n] = centre + Vector3::new(0.3, 1.0, gap);
+    // far from the origin, which is no place of its own
+    vertices.iter_mut().for_each(|x| x.x += 1e3);
     let curve = Polyline::new(vertices, closed).unwrap();
     RodState::new(&curve, rest * curve.n_edges() as f64, 0.0).unwrap()
 }

@@ -1,0 +1,181 @@
+//! The linear algebra of the steps: forms by hand, and what every solve must satisfy.
+
+use std::f64::consts::TAU;
+
+use topo_core::Polyline;
+
+use super::*;
+use crate::Geometry;
+use crate::energy::{At, Bend, ContactEnergy, EnergyTerm, Stretch};
+use crate::friction::{Friction, friction_form};
+use crate::viscosity::{centreline_form, twist_form};
+
+/// A crumpled rod of 40 edges with strands in contact.
+fn crumpled(closed: bool) -> RodState {
+    let vertex = |k: usize| {
+        let u = TAU * k as f64 / 40.0;
+        let r = 2.0 + 0.5 * (3.0 * u).cos();
+        Vector3::new(
+            r * (2.0 * u).cos(),
+            r * (2.0 * u).sin(),
+            0.8 * (3.0 * u).sin(),
+        )
+    };
+    let curve = Polyline::new((0..40).map(vertex).collect(), true).unwrap();
+    let rod = RodState::new(&curve, 24.0, 0.4).unwrap();
+    if closed { rod } else { rod.cut_at(7).unwrap() }
+}
+
+/// A component-major vector that is zero but at some vertices.
+fn at(n: usize, entries: &[(usize, [f64; 3])]) -> Vec<f64> {
+    let mut out = vec![0.0; 3 * n];
+    for (i, v) in entries {
+        (0..3).for_each(|k| out[k * n + i] = v[k]);
+    }
+    out
+}
+
+/// u·K v, w·M_θ w' and u·C v of a few entries, by hand: edges of 0.5.
+#[test]
+fn val_forms_of_resistance_by_hand() {
+    let line = (0..=8).map(|k| Vector3::new(0.5 * f64::from(k), 0.0, 0.0));
+    let line = Polyline::new(line.collect(), false).unwrap();
+    let chain = RodState::new(&line, 4.0, 0.0).unwrap().chain();
+    let (u, v) = (
+        at(9, &[(3, [1.0, 2.0, 3.0])]),
+        at(9, &[(4, [2.0, 0.0, 1.0])]),
+    );
+    // two edges, |u|² = 14 each; one edge, −(1·2 + 3·1)
+    assert!((centreline_form(chain, &u, &u) - 56.0).abs() < 1e-12);
+    assert!((centreline_form(chain, &u, &v) + 10.0).abs() < 1e-12);
+    let turn = |j: usize, w: f64| {
+        (0..8)
+            .map(|k| if k == j { w } else { 0.0 })
+            .collect::<Vec<_>>()
+    };
+    let form = |u: &[f64], w: &[f64]| twist_form(chain, |_| 0.5, u, w);
+    // two vertices, 2² each; one vertex, −c · 2 · 3
+    assert!((form(&turn(3, 2.0), &turn(3, 2.0)) - 8.0).abs() < 1e-12);
+    assert!((form(&turn(3, 2.0), &turn(4, 3.0)) + 3.0).abs() < 1e-12);
+    // the first edge has a vertex at its end only
+    assert!((form(&turn(0, 1.0), &turn(0, 1.0)) - 1.0).abs() < 1e-12);
+    let couplings = [(0, 2, 0.5), (2, 3, 2.0)];
+    let u = at(4, &[(2, [1.0, 0.0, 2.0])]);
+    let v = at(4, &[(2, [3.0, 1.0, 0.0]), (0, [0.0, 1.0, 1.0])]);
+    // 0.5 · (−1, 0, −2)·(−3, 0, 1) + 2 · (1, 0, 2)·(3, 1, 0)
+    assert!((friction_form(&couplings, &u, &v, 4) - 6.5).abs() < 1e-12);
+}
+
+/// (M_θ + s H_θ) w = q on the edges that are free, those held turn as prescribed.
+#[test]
+fn law_rotations_solve_their_equations() {
+    for closed in [true, false] {
+        for held in [vec![], vec![0, 13]] {
+            let state = crumpled(closed);
+            let (chain, geometry) = (state.chain(), Geometry::new(&state));
+            let is_held = |j: &usize| held.contains(j);
+            let fixed: Vec<bool> = (0..40).map(|j| is_held(&j)).collect();
+            let given: Vec<f64> = (0..40).map(|j| (1.7 * f64::from(j)).sin()).collect();
+            let (s, half) = (0.8, 0.5 / state.rest_length());
+            // M_θ + s H_θ and M_θ alone, of the definition
+            let apply = |w: &[f64], s: f64| {
+                let mut out = vec![0.0; 40];
+                for i in state.interior() {
+                    let (a, c) = (state.edge_before(i), geometry.cosine[i]);
+                    out[a] += half * (w[a] - c * w[i]) + s * (w[a] - w[i]);
+                    out[i] += half * (w[i] - c * w[a]) + s * (w[i] - w[a]);
+                }
+                out
+            };
+            let mut viscosity = TwistViscosity::new(fixed.clone());
+            viscosity.prepare(chain, &geometry.cosine, s).unwrap();
+            let mut w = given.clone();
+            viscosity.solve(chain, &geometry.cosine, s, &mut w);
+            let mut newton = NewtonTwist::new(fixed);
+            newton.prepare(chain, &geometry.cosine, s).unwrap();
+            let mut step = given.clone();
+            newton.solve(&mut step);
+            let (found, stepped, right) = (apply(&w, s), apply(&step, s), apply(&given, 0.0));
+            for j in 0..40 {
+                if held.contains(&j) {
+                    assert_eq!((w[j], step[j]), (given[j], given[j]));
+                } else {
+                    assert!((found[j] - given[j]).abs() < 1e-8, "{j}: {}", found[j]);
+                    assert!((stepped[j] - right[j]).abs() < 1e-8, "{j}: {}", stepped[j]);
+                }
+            }
+        }
+    }
+}
+
+/// (M + s H) out = M r at the vertices that are free, with M = η K + η_f C; those held move as prescribed.
+#[test]
+fn law_newton_steps_solve_their_equations() {
+    for (closed, held) in [(true, vec![]), (false, vec![]), (false, vec![0, 1, 20])] {
+        let state = crumpled(closed);
+        let (n, l0) = (state.n_vertices(), state.rest_length());
+        // the tips of the open one are still in one place
+        let mut pairs = ContactPairs::new(1.7, 0.3);
+        pairs.update(&state);
+        let geometry = Geometry::new(&state);
+        let place = At {
+            state: &state,
+            geometry: &geometry,
+            pairs: &pairs,
+        };
+        let mut stiffness = Stiffness::default();
+        stiffness.reset(n, pairs.active().len());
+        let contact = ContactEnergy {
+            stiffness: 20.0,
+            diameter: 1.7,
+        };
+        Bend.add_stiffness(place, &mut stiffness);
+        Stretch { ratio: 5.0 }.add_stiffness(place, &mut stiffness);
+        contact.add_stiffness(place, &mut stiffness);
+        let friction = Friction {
+            ratio: 0.7,
+            range: 1.5,
+        };
+        let mut couplings = Vec::new();
+        friction.couplings(pairs.active(), &mut couplings);
+        assert!(couplings.len() > 10);
+        let s = 0.03;
+        let mut newton = NewtonMatrix::new((0..n).map(|i| held.contains(&i)).collect());
+        newton
+            .prepare(&state, &pairs, &stiffness, s, &couplings)
+            .unwrap();
+        let given: Vec<f64> = (0..3 * n).map(|k| (0.9 * k as f64).sin()).collect();
+        let mut found = given.clone();
+        newton.solve(&mut found);
+        let vectors = |flat: &[f64]| -> Vec<Vector3<f64>> {
+            (0..n)
+                .map(|i| Vector3::new(flat[i], flat[n + i], flat[2 * n + i]))
+                .collect()
+        };
+        let (u, r) = (vectors(&found), vectors(&given));
+        let resistance = |v: &[Vector3<f64>]| {
+            let mut out = vec![Vector3::zeros(); n];
+            let edges = (0..state.n_edges()).map(|j| (j, state.edge_end(j), 1.0 / l0));
+            let rubbing = couplings
+                .iter()
+                .map(|&(i, j, c)| (i as usize, j as usize, c));
+            for (i, j, c) in edges.chain(rubbing) {
+                out[i] += (v[i] - v[j]) * c;
+                out[j] += (v[j] - v[i]) * c;
+            }
+            out
+        };
+        let (left, right) = (resistance(&u), resistance(&r));
+        let elastic = stiffness.product(pairs.active(), &u);
+        for i in 0..n {
+            if held.contains(&i) {
+                assert_eq!(u[i], r[i]);
+            } else {
+                let error = (left[i] + elastic[i] * s - right[i]).norm();
+                assert!(error < 1e-9 * right[i].norm().max(1.0), "{i}: {error:.1e}");
+            }
+        }
+        let mean: Vector3<f64> = u.iter().sum();
+        assert!(!held.is_empty() || mean.norm() < 1e-10, "the rod drifts");
+    }
+}
