@@ -333,6 +333,18 @@ mod tests {
     }
 
     #[test]
+    fn another_tolerance_or_a_step_beyond_the_limits_leads_nowhere() {
+        let now = control();
+        assert_eq!(now.tolerance(), 1e-3);
+        let mut later = now.clone();
+        later.dt *= 0.5;
+        assert!(now.leads_to(&later));
+        later.dt = 2.0 * later.dt_max;
+        assert!(!now.leads_to(&later));
+        assert!(!now.leads_to(&StepControl::new(2e-3, 1.0).unwrap()));
+    }
+
+    #[test]
     fn steps_follow_the_error() {
         let mut c = control();
         c.accept(1.0, 1e-3, 2);

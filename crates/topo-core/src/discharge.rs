@@ -241,6 +241,16 @@ mod tests {
         assert_eq!(curve.series("twist"), Some(&[2.0, 1.0][..]));
         assert_eq!(curve.series("internal"), Some(&[0.0, 1.5][..]));
         assert_eq!(curve.series("contact"), None);
+        assert_eq!(
+            (curve.time(), curve.parts()),
+            (&[0.0, 0.5][..], &["bend".into(), "twist".into()][..])
+        );
+        assert_eq!(
+            (curve.channels(), curve.dissipated()),
+            (&["internal".into()][..], &[vec![0.0, 1.5]][..])
+        );
+        assert_eq!(curve.stored(), [[1.0, 0.5], [2.0, 1.0]]);
+        assert!(!curve.is_empty() && DischargeCurve::new(["bend"], ["internal"]).is_empty());
     }
 
     #[test]

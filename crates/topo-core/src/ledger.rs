@@ -271,6 +271,7 @@ mod tests {
             (Some(0.5), 1.5)
         );
         assert_eq!(ledger.events()[0].name, "cut");
+        assert_eq!(ledger.channels(), ["internal", "friction"]);
         assert_eq!(Ledger::default().relative_residual(), 0.0);
     }
 

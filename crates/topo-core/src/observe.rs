@@ -264,6 +264,10 @@ mod tests {
             last = next;
             assert!(logarithmic.due(next, k));
         }
+        // 10^(61/20) after a jump over sixty
+        let mut dense = Schedule::log_spaced(1e-3, 20.0).unwrap().exact();
+        assert!(dense.due(1.05, 0));
+        assert!((dense.next_exact().unwrap() / 1.122_018_454_301_963 - 1.0).abs() < 1e-14);
     }
 
     #[test]

@@ -183,6 +183,7 @@ mod tests {
             (4, 4, 4.0)
         );
         assert_eq!(square.edge(3), -V::y());
+        assert_eq!(square.clone().into_vertices(), square.vertices());
         assert_eq!(square.centroid(), V::new(0.5, 0.5, 0.0));
         assert_eq!(square.scaled(2.0).unwrap().length(), 8.0);
         assert!(

@@ -251,7 +251,18 @@ mod tests {
         assert!(spread(&even) < 1e-10);
         assert!((even.vertices()[120] - curve.vertices()[300]).norm() < 1e-14);
         assert_eq!(curve.resampled(1).unwrap().n_vertices(), 2);
-        assert!(curve.resampled(0).is_err() && trefoil(50).resampled(2).is_err());
+        let few = |n_vertices, needed| CurveError::TooFewVertices { n_vertices, needed };
+        assert_eq!(curve.resampled(0), Err(few(1, 2)));
+        assert_eq!(trefoil(50).resampled(2), Err(few(2, 3)));
+    }
+
+    /// Few long chords start far from equal, and Newton's method ends at rounding.
+    #[test]
+    fn edges_are_equal_to_rounding_however_few() {
+        for n in [9, 12, 15, 20, 40, 200] {
+            let even = trefoil(200).resampled(n).unwrap();
+            assert!(spread(&even) < 2e-13, "{n}: {:e}", spread(&even));
+        }
     }
 
     #[test]

@@ -64,4 +64,18 @@ mod tests {
         );
         assert!((d2 - 4.0).abs() < 1e-14);
     }
+
+    #[test]
+    fn edges_of_any_length_cross_at_their_points() {
+        for l in [1e-9, 1e-3, 1.0, 1e3, 1e9] {
+            let (a, b) = (V::new(-0.2, 0.0, 0.1) * l, V::new(0.8, 0.0, 0.1) * l);
+            let (c, d) = (V::new(0.0, -0.7, 0.0) * l, V::new(0.0, 0.3, 0.0) * l);
+            let (d2, s, t) = closest_points(&a, &b, &c, &d);
+            assert!((d2 / (l * l) - 0.01).abs() < 1e-14, "{l}: {d2}");
+            assert!(
+                (s - 0.2).abs() < 1e-14 && (t - 0.7).abs() < 1e-14,
+                "{l}: {s} {t}"
+            );
+        }
+    }
 }

@@ -198,4 +198,35 @@ mod tests {
             );
         }
     }
+
+    /// Middles of the pieces through four points with right angles, 1, 2 and 3 apart: second derivatives by Cramer's rule.
+    #[test]
+    fn natural_splines_solve_their_equations() {
+        let x = [
+            V::zeros(),
+            V::x(),
+            V::new(1.0, 2.0, 0.0),
+            V::new(1.0, 2.0, 3.0),
+        ];
+        let kinks = [(V::y() - V::x()) * 6.0, (V::z() - V::y()) * 6.0];
+        for n in [3, 4] {
+            let m = if n == 3 {
+                [V::zeros(), kinks[0] / 6.0, V::zeros(), V::zeros()]
+            } else {
+                // 6 m1 + 2 m2 = k1, 2 m1 + 10 m2 = k2
+                let one = (kinks[0] * 10.0 - kinks[1] * 2.0) / 56.0;
+                let two = (kinks[1] * 6.0 - kinks[0] * 2.0) / 56.0;
+                [V::zeros(), one, two, V::zeros()]
+            };
+            let spline = CubicSpline::through(&Polyline::new(x[..n].to_vec(), false).unwrap());
+            for (i, middle) in [0.5, 2.0, 4.5].into_iter().enumerate().take(n - 1) {
+                let h = (i + 1) as f64;
+                let expected = (x[i] + x[i + 1]) * 0.5 - (m[i] + m[i + 1]) * (h * h / 16.0);
+                assert!(
+                    (spline.at(middle).0 - expected).norm() < 1e-14,
+                    "{n}, piece {i}"
+                );
+            }
+        }
+    }
 }

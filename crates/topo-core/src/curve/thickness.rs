@@ -206,6 +206,23 @@ mod tests {
         assert!((found.dcsd - 1.4).abs() < 1e-12, "{found:?}");
     }
 
+    /// Points of a regular polygon at least π r apart along it are closest k edges apart, k = ⌈π r/l⌉, 2 sin(k π/n) R by a chord.
+    #[test]
+    fn windowed_distance_of_a_circle_is_a_chord() {
+        let (n, size) = (90, 3.0);
+        let turn = std::f64::consts::PI / n as f64;
+        for radius in [0.2, 0.7, 1.5] {
+            let apart = std::f64::consts::PI * radius / (2.0 * size * turn.sin());
+            let chord = size * (apart.ceil() * turn).sin();
+            let found = windowed_half_distance(&circle(n, size), radius);
+            assert!((found - chord).abs() < 1e-12, "{found} {chord}");
+        }
+        let x = [(0.0, 0.0), (4.0, 0.0), (5.0, 0.7), (4.0, 1.4), (0.0, 1.4)];
+        let hairpin = x.iter().map(|&(x, y)| V::new(x, y, 0.0)).collect();
+        let hairpin = Polyline::new(hairpin, false).expect("a curve");
+        assert!((windowed_half_distance(&hairpin, 0.5) - 0.7).abs() < 1e-12);
+    }
+
     proptest! {
         #[test]
         fn pruned_thickness_is_brute_force(

@@ -234,6 +234,11 @@ mod tests {
             })
             .collect();
         assert_eq!(writhe(&circle, true), 0.0);
+        let curve = Polyline::new(circle.clone(), true).unwrap();
+        assert_eq!(
+            (curve.writhe(), curve.average_crossing_number()),
+            (0.0, 0.0)
+        );
         // Tilted, coplanarity holds only up to rounding, and antiparallel edges see each other.
         let turn = nalgebra::Rotation3::from_euler_angles(0.3, -1.2, 2.5);
         let tilted: Vec<V> = circle

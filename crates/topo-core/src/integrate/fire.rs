@@ -288,4 +288,32 @@ mod tests {
         assert_eq!(flipping.end, RelaxationEnd::Uphill);
         assert!(Fire::new(0.0, 1.0).is_err() && Fire::new(1.0, f64::NAN).is_err());
     }
+
+    /// A pull that never turns leaves free fall, v ← v + F dt and x ← x + v dt, whose steps grow by 1.1 from the 22nd on.
+    #[test]
+    fn a_constant_force_is_free_fall_in_growing_steps() {
+        let (first, force) = (1e-3, [3.0, 4.0]);
+        let (mut dt, mut v, mut fallen) = (first, 0.0, 0.0);
+        for step in 1..=60 {
+            if step > 21 {
+                dt = f64::min(1.1 * dt, 10.0 * first);
+            }
+            v += dt;
+            fallen += dt * v;
+        }
+        let mut x = [0.0, 0.0];
+        let mut pull = |_: &[f64], f: &mut [f64]| {
+            f.copy_from_slice(&force);
+            Ok(())
+        };
+        let fire = Fire::new(first, 1e3).unwrap().with_max_steps(60);
+        fire.relax(&mut x, &mut pull, &mut |_| false);
+        for (x, f) in x.iter().zip(force) {
+            assert!(
+                (x / (f * fallen) - 1.0).abs() < 1e-12,
+                "{x} of {}",
+                f * fallen
+            );
+        }
+    }
 }

@@ -452,4 +452,31 @@ mod tests {
         assert!(matches!(absurd, Err(Rejection::TooManyStages { .. })));
         assert!(Rkc2::new(1).is_err());
     }
+
+    /// Stability reaches to 2/3 (s² − 1)(1 − 2/15 · 2/13) with s stages (`sommeijer1998`).
+    #[test]
+    fn the_reach_of_stages_needs_them_all_and_is_stable() {
+        for s in 2..300 {
+            let reach = Rkc2Stages::reach(s);
+            let bound = 2.0 / 3.0 * (s * s - 1) as f64 * (1.0 - 2.0 / 15.0 * DAMPING);
+            assert!(
+                Rkc2Stages::needed(reach) == s && reach < bound,
+                "{s}: {reach} of {bound}"
+            );
+        }
+        assert_eq!(Rkc2::new(17).unwrap().max_stages(), 17);
+    }
+
+    #[test]
+    fn the_displacement_is_what_a_step_moved() {
+        let mut model = Oscillator::default();
+        let (mut rkc, from) = (Rkc2::default(), model.start());
+        let mut to = from.clone();
+        rkc.step(&mut model, &from, 0.01, &mut to).unwrap();
+        let moved = Stepper::<Oscillator>::displacement(&rkc);
+        assert_eq!(moved.len(), from.len());
+        for (k, m) in moved.iter().enumerate() {
+            assert!((from[k] + m - to[k]).abs() < 1e-15);
+        }
+    }
 }
