@@ -130,10 +130,6 @@ mod tests {
         assert!((errors[1].unwrap() - 0.10).abs() < 1e-12);
         // without a coarser run nothing is known
         assert_eq!((errors[2], errors[3]), (Some(1.0), None));
-        assert_eq!(
-            (found[1].value(), found[1].extrapolated),
-            (Some(20.0), None)
-        );
     }
 
     #[test]
