@@ -12,8 +12,8 @@ mod snapshot;
 mod sweep;
 mod table;
 
-pub use case::{NEMATIC_SHARES, RESULTS_VERSION as NEMATIC_RESULTS_VERSION};
 pub(crate) use case::RESULTS_VERSION;
+pub use case::{NEMATIC_SHARES, RESULTS_VERSION as NEMATIC_RESULTS_VERSION};
 pub use field::FieldSnapshot;
 pub use frames::{NematicFrame, nematic_frames};
 pub use onset::{BucklingCase, BucklingRow, buckling_cases, buckling_study};

@@ -261,7 +261,7 @@ mod tests {
             ..NematicParameters::default()
         };
         fit(&mut nematic, 1.0);
-        assert_eq!((nematic.spacing, nematic.cells), (22.5 / 23.0, None));
+        assert_eq!((nematic.spacing, nematic.cells), (22.5 / 24.0, None));
         assert_eq!(nematic.cell, [6.0, 6.0, 4.5]);
     }
 }

@@ -53,28 +53,30 @@ pub(crate) const MEASURED: Colloid = Colloid {
     cell: [36.0 / 7.0, 36.0 / 7.0, 36.0 / 7.0],
 };
 
-/// Of the cases of the published sweep each tenth, so that all knots and all twists are there.
+/// Of the cases of the published sweep every tenth, so that all knots and all twists are there.
 const EVERY: usize = 10;
 
 /// Knots and twists of a set.
 pub(super) fn rods(set: CaseSet) -> Result<Vec<(String, f64)>, AnalysisError> {
-    let first = match set {
-        CaseSet::Table => 0,
-        CaseSet::Factor => 3,
-        CaseSet::Check => 6,
+    let places: &[usize] = match set {
+        CaseSet::Table => &[0],
+        CaseSet::Factor => &[3, 6],
+        CaseSet::Check => &[1],
     };
     let all = ElasticScene::published(Preset::Draft).cases(&KnotTable::builtin())?;
     let named = all
         .into_iter()
-        .filter_map(|case| Some((case.knot, case.rod.twist?)));
-    Ok(named.skip(first).step_by(EVERY).collect())
+        .filter_map(|case| Some((case.knot, case.rod.twist?)))
+        .enumerate();
+    let of_set = named.filter(|(k, _)| places.contains(&(k % EVERY)));
+    Ok(of_set.map(|(_, case)| case).collect())
 }
 
 /// Edges of cells (xi_N) that grids of all spacings meet: multiples of 12.
 const FLAT: [f64; 3] = [36.0, 36.0, 24.0];
 const CUBE: [f64; 3] = [36.0, 36.0, 36.0];
 const WIDE: [f64; 3] = [48.0, 48.0, 36.0];
-/// The default shape at R = 9.8, which they meet nearly.
+/// Near the default shape at R = 9.8; they meet it nearly.
 const DEFAULT: [f64; 3] = [56.0, 56.0, 42.0];
 
 /// Particles small enough for fine grids. Their patterns are about as fine as those of larger ones below the buckling of
@@ -93,12 +95,18 @@ pub(super) fn colloids(set: CaseSet) -> Vec<Colloid> {
             (6.75, CUBE, &[1, 2, 3, 4]),
             (7.25, CUBE, &[1, 2, 3, 4]),
             (8.5, WIDE, &[3, 5]),
-        ],
-        CaseSet::Check => &[
             (6.4, FLAT, &[1, 3]),
             (7.6, CUBE, &[1, 2, 3, 4]),
             (8.4, WIDE, &[1, 2, 3, 4]),
             (9.8, DEFAULT, &[2, 4, 6]),
+        ],
+        CaseSet::Check => &[
+            (6.1, FLAT, &[1, 2, 3]),
+            (6.9, CUBE, &[2, 3, 4]),
+            (7.4, CUBE, &[1, 2, 3]),
+            (8.2, WIDE, &[2, 4]),
+            (8.8, WIDE, &[3, 5]),
+            (9.6, DEFAULT, &[3]),
         ],
     };
     let of = |&(radius, cell, charges): &(f64, [f64; 3], &[i32])| {

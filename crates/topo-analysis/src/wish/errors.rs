@@ -90,7 +90,7 @@ mod tests {
                 resolution: 100.0,
                 tolerance: 1e-3,
                 median_error: 0.02,
-                high_error: 0.1,
+                high_error: 0.04,
                 cpu_seconds: 1.0,
                 peak_bytes: 1,
                 check_resolution: 50.0,
@@ -124,16 +124,12 @@ mod tests {
         ];
         let found = errors_of_rods(&grant(), &rows, &coarser);
         let errors: Vec<_> = found.iter().map(|r| r.relative_error).collect();
-        // a difference that tells less than the median error counts as that
+        // a difference that tells less than half of the 90th percentile counts as that
         assert!((errors[0].unwrap() - 0.04).abs() < 1e-12);
         // at twice the edges a difference of 15 % tells an error of 5 %
         assert!((errors[1].unwrap() - 0.10).abs() < 1e-12);
         // without a coarser run nothing is known
         assert_eq!((errors[2], errors[3]), (Some(1.0), None));
-        assert_eq!(
-            (found[1].value(), found[1].extrapolated),
-            (Some(20.0), None)
-        );
     }
 
     #[test]

@@ -61,14 +61,15 @@ pub fn record_table(system: System, rows: &[TradeoffRow]) -> Result<(), XtaskErr
         return Ok(());
     };
     let points = points(system, rows);
-    let path = place(table, "csv");
-    write_table(&path, &points)?;
-    println!("recorded: {}", path.display());
     let n_cases = points.iter().map(|p| p.n_cases).max().unwrap_or(0);
+    // before the files change, which would be changes to the commit
     let record = Record {
         table: stamp(table, n_cases),
         factor: None,
     };
+    let path = place(table, "csv");
+    write_table(&path, &points)?;
+    println!("recorded: {}", path.display());
     write_record(table, &record)?;
     let text = crate::tradeoff::section(Quality::Standard, system, rows);
     record_part(PAGE, &format!("{} settings", system.name()), &text)
