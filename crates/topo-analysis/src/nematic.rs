@@ -12,7 +12,6 @@ mod snapshot;
 mod sweep;
 mod table;
 
-pub(crate) use case::RESULTS_VERSION;
 pub use case::{NEMATIC_SHARES, RESULTS_VERSION as NEMATIC_RESULTS_VERSION};
 pub use field::FieldSnapshot;
 pub use frames::{NematicFrame, nematic_frames};

@@ -67,7 +67,7 @@ impl Measured {
     pub fn results_version(self) -> u32 {
         match self {
             Self::Rod => elastic::RESULTS_VERSION,
-            Self::Nematic => nematic::RESULTS_VERSION,
+            Self::Nematic => nematic::NEMATIC_RESULTS_VERSION,
         }
     }
 
