@@ -1,7 +1,8 @@
 //! Work done on the ends of a rod: closed forms of the work, and books that balance with it.
 
-use topo_rod::{EndCondition, EndMotion, Ends};
-use topo_tests::curves::line;
+use topo_core::Polyline;
+use topo_rod::{EndCondition, EndMotion, Ends, FrictionParameters};
+use topo_tests::curves::{from_tangents, line};
 use topo_tests::run::{RodSimulation, Setup, rod, run_to, stored};
 
 const N_EDGES: usize = 50;
@@ -19,6 +20,16 @@ fn assert_balanced(simulation: &RodSimulation) {
     assert!(residual < 1e-3, "residual {residual:.2e}");
 }
 
+/// A vector of that length along no axis.
+fn along(size: f64) -> [f64; 3] {
+    [2.0, -3.0, 6.0].map(|x| size * x / 7.0)
+}
+
+/// A straight line in that direction, so that each component of a motion counts.
+fn skew_line() -> Polyline {
+    from_tangents(N_EDGES, LENGTH / N_EDGES as f64, |_| along(1.0).into())
+}
+
 fn ends(conditions: [EndCondition; 2], last: EndMotion) -> Ends {
     Ends {
         conditions,
@@ -31,12 +42,12 @@ fn ends(conditions: [EndCondition; 2], last: EndMotion) -> Ends {
 fn law_work_of_an_end_force() {
     let pull = 0.3;
     let motion = EndMotion {
-        force: [pull, 0.0, 0.0],
+        force: along(pull),
         ..Default::default()
     };
     let setup =
         Setup::bare(1e-5).with_ends(ends([EndCondition::Pinned, EndCondition::Free], motion));
-    let mut simulation = setup.simulation(rod(&line(N_EDGES, LENGTH), 0.0));
+    let mut simulation = setup.simulation(rod(&skew_line(), 0.0));
     run_to(&mut simulation, 5.0);
     let gamma = setup.parameters.stretch_ratio;
     let account = simulation.model().account();
@@ -59,11 +70,11 @@ fn law_work_of_an_end_force() {
 fn law_work_of_a_prescribed_displacement() {
     let (speed, time) = (0.4, 3.0);
     let motion = EndMotion {
-        velocity: [speed, 0.0, 0.0],
+        velocity: along(speed),
         ..Default::default()
     };
     let setup = Setup::bare(1e-5).with_ends(ends([EndCondition::Pinned; 2], motion));
-    let mut simulation = setup.simulation(rod(&line(N_EDGES, LENGTH), 0.0));
+    let mut simulation = setup.simulation(rod(&skew_line(), 0.0));
     run_to(&mut simulation, time);
     let strain = speed * time / LENGTH;
     let spring = 0.5 * setup.parameters.stretch_ratio * strain * strain * LENGTH;
@@ -155,5 +166,37 @@ fn law_books_balance_while_a_driven_rod_writhes() {
         account.dissipated_total()
     );
     assert!(account.work() > 0.0 && account.dissipated_total() > 0.0);
+    assert_balanced(&simulation);
+}
+
+/// A held tip dragged along another strand of its rod pays for the friction there: the books still balance.
+#[test]
+fn law_books_balance_while_a_held_tip_rubs() {
+    let motion = EndMotion {
+        velocity: [-0.4, 0.1, 0.2],
+        ..Default::default()
+    };
+    let ends = Ends {
+        conditions: [EndCondition::Pinned, EndCondition::Clamped],
+        motions: [motion, EndMotion::default()],
+    };
+    let mut setup = Setup::bare(1e-4).with_ends(ends);
+    setup.parameters.friction = Some(FrictionParameters {
+        ratio: 2.0,
+        ..Default::default()
+    });
+    // a hairpin: out, half a turn of diameter 1.5, and back past the first tip
+    let (edge, out, turn) = (0.2, 40, 12);
+    let angle = |j: usize| (j as f64 - out as f64 + 0.5) / turn as f64;
+    let curve = from_tangents(140, edge, |j| {
+        let (sin, cos) = (std::f64::consts::PI * angle(j).clamp(0.0, 1.0)).sin_cos();
+        nalgebra::Vector3::new(cos, sin, 0.0)
+    });
+    let mut simulation = setup.simulation(rod(&curve, 0.0));
+    run_to(&mut simulation, 2.0);
+    let account = simulation.model().account();
+    let rubbed = account.dissipated_by("friction").unwrap_or_default();
+    println!("work {} friction {rubbed}", account.work());
+    assert!(rubbed > 0.2 * account.work(), "the tip hardly rubs");
     assert_balanced(&simulation);
 }

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use nalgebra::Vector3;
-use topo_core::{Polyline, Sample, Schedule, Scheduled};
+use topo_core::{Polyline, Sample, Schedule, Scheduled, SpectralBound};
 use topo_rod::RodState;
 use topo_tests::curves::{from_tangents, line, ring};
 use topo_tests::run::{Setup, rod, run_to, stored};
@@ -66,6 +66,24 @@ fn val_bending_decay_rate_of_a_straight_rod() {
         // the second difference of the mode is smaller than its second derivative by (k π/N)²/12
         let tolerance = 1e-3 * mode;
         assert_rate(rate, expected, tolerance, "bend");
+    }
+}
+
+/// The fastest rates of a straight rod: γ of stretch, α/2 of twist, and 1/l_0² of bending from edge to edge. The bound that the
+/// stabilised integrator asks for lies above the largest by its margin, a fifth, and no more.
+#[test]
+fn val_spectral_radius_of_a_straight_rod() {
+    for (ratio, length) in [(100.0, 50.0), (5.0, 50.0), (5.0, 10.0)] {
+        let state = rod(&line(N_EDGES, length), 0.0);
+        let edge = length / N_EDGES as f64;
+        let setup = Setup::bare(1e-3).with_twist().with_stretch_ratio(ratio);
+        let fastest = f64::max(ratio, 1.0 / (edge * edge));
+        let bound = setup.model(&state).spectral_radius(&state).unwrap();
+        println!("bound {bound}, fastest {fastest}");
+        assert!(
+            (1.05..1.3).contains(&(bound / fastest)),
+            "{bound} {fastest}"
+        );
     }
 }
 

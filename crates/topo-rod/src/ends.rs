@@ -133,3 +133,51 @@ impl Ends {
             .collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn free(force: [[f64; 3]; 2], torque: [f64; 2]) -> Ends {
+        let motion = |end: usize| EndMotion {
+            force: force[end],
+            torque: torque[end],
+            ..Default::default()
+        };
+        Ends {
+            motions: [motion(0), motion(1)],
+            ..Default::default()
+        }
+    }
+
+    /// Internal viscosity resists no common motion, so loads on a free rod must sum to zero; what is held balances any.
+    #[test]
+    fn loads_on_a_free_rod_balance() {
+        let pull = [0.1, -0.2, 0.3];
+        let balanced = free([pull, pull.map(|x| -x)], [0.4, -0.4]);
+        assert!(balanced.checked(true).is_ok());
+        let refused = |ends: Ends, word: &str| {
+            let error = ends.checked(true).expect_err("unbalanced").to_string();
+            assert!(error.contains(word), "{error}");
+        };
+        for axis in 0..3 {
+            let mut force = [pull, pull.map(|x| -x)];
+            force[1][axis] *= -1.0;
+            refused(free(force, [0.0; 2]), "forces");
+        }
+        for torque in [[0.4, 0.4], [0.4, 0.0], [0.0, -0.4]] {
+            let twisted = free([[0.0; 3]; 2], torque);
+            refused(twisted, "torques");
+            let pinned = Ends {
+                conditions: [EndCondition::Pinned, EndCondition::Free],
+                ..twisted
+            };
+            refused(pinned, "torques");
+        }
+        let clamped = Ends {
+            conditions: [EndCondition::Clamped, EndCondition::Free],
+            ..free([[0.0; 3], pull], [0.0, 0.4])
+        };
+        assert!(clamped.checked(true).is_ok());
+    }
+}

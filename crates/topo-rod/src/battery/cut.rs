@@ -126,4 +126,20 @@ mod tests {
         );
         assert_eq!(cut_candidates(&vec![1.0; 30], 0.25, 0.03).len(), 1);
     }
+
+    /// Distances are the shorter way round: flanks reach π/0.25 = 12.6 vertices, across the seam as anywhere.
+    #[test]
+    fn flanks_reach_across_the_seam() {
+        let n = 200;
+        for (apart, n_kept) in [(10, 1), (14, 2)] {
+            for first in [193, 50] {
+                let mut density = vec![1.0; n];
+                density[first] = 3.0;
+                density[(first + apart) % n] = 2.99;
+                let found = cut_candidates(&density, 0.25, 0.03);
+                assert_eq!(found.len(), n_kept, "{first} {apart}");
+                assert_eq!(found[0].vertex, first);
+            }
+        }
+    }
 }

@@ -110,6 +110,14 @@ mod tests {
                 .windows(2)
                 .all(|p| (p[0].i, p[0].j) < (p[1].i, p[1].j))
         );
+        // weights sum to the integral over all pairs less than half a turn apart, however fine the ring
+        let fine = (0..1024).map(|k| std::f64::consts::TAU * f64::from(k) / 1024.0);
+        let fine = fine.map(|u| [0.45 * u.cos(), 0.45 * u.sin(), 0.0]);
+        let integral = length * std::f64::consts::PI;
+        for pairs in [&shrunk, &found(fine, true, length)] {
+            let sum: f64 = pairs.iter().map(|p| p.weight).sum();
+            assert!((sum / integral - 1.0).abs() < 0.1, "{sum} {integral}");
+        }
         let first = shrunk[0];
         let pulled = first.normal.dot(&Vector3::new(1.0, 0.0, 0.0));
         assert!(pulled > 0.0 && first.distance < first.limit);
