@@ -55,6 +55,6 @@ pub use tradeoff::{
     compared, ladder, settings_of, tradeoff,
 };
 pub use wish::{
-    COVERED, CheckRow, ErrorRow, Factor, Grant, Measured, Point, Record, Stamp, Wish,
+    CheckRow, Cover, ErrorRow, Factor, Grant, Measured, Point, Record, Stamp, Wish,
     check_estimates, errors_of_colloids, errors_of_rods, factor_of_estimates, points, table_hash,
 };

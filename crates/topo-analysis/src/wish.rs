@@ -11,7 +11,7 @@ mod table;
 pub use choice::Grant;
 pub(crate) use choice::{Load, grant};
 pub use errors::{ErrorRow, errors_of_colloids, errors_of_rods};
-pub use holds::{COVERED, CheckRow, check_estimates, factor_of_estimates};
+pub use holds::{CheckRow, Cover, check_estimates, factor_of_estimates};
 pub(crate) use pair::extrapolated;
 pub use record::{Factor, Measured, Record, Stamp, table_hash};
 pub use table::{Point, points};

@@ -13,12 +13,26 @@ use crate::tradeoff::TradeoffRow;
 /// Accuracies asked for in the check.
 const ASKED: [f64; 5] = [0.1, 0.05, 0.03, 0.02, 0.01];
 
-/// Share of the errors that the estimates are to cover on the cases of the factor: more than the nine tenths promised, as a
-/// quantile of two dozen cases is no sure one.
-pub const COVERED: f64 = 0.93;
+/// Share of the errors that estimates are to cover on cases they were not scaled on.
+const PROMISED: f64 = 0.9;
+/// Standard normal quantile of the confidence, 90 %, with which the promise is to hold on other cases.
+const CONFIDENCE: f64 = 1.2816;
 
-/// The factor by which estimates of the settings `points` cover the errors of a share of the cases `rows`, with the number of
-/// these; none without cases.
+/// The factor between differences and estimates that covers a share of the errors.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Cover {
+    /// Errors over raw estimates stay below this in the share of them.
+    pub scale: f64,
+    /// The share.
+    pub share: f64,
+    /// Cases it was taken from.
+    pub n_cases: usize,
+}
+
+/// The factor by which estimates of the settings `points` cover the errors of the cases `rows`; none without cases.
+///
+/// A quantile of `n` cases is uncertain by √(p(1−p)/n), so that the one taken lies above p = 0.9 by 1.28 times that: with
+/// nine tenths confidence, nine tenths of the errors of other cases are covered.
 ///
 /// # Validation
 /// `the_factor_is_the_quantile_that_covers`
@@ -26,8 +40,24 @@ pub fn factor_of_estimates(
     system: System,
     points: &[Point],
     rows: &[TradeoffRow],
+) -> Option<Cover> {
+    let n_cases = cases(rows).len();
+    let spread = (PROMISED * (1.0 - PROMISED) / n_cases as f64).sqrt();
+    let share = (PROMISED + CONFIDENCE * spread).min(1.0);
+    let scale = scale_covering(system, points, rows, share)?;
+    Some(Cover {
+        scale,
+        share,
+        n_cases,
+    })
+}
+
+fn scale_covering(
+    system: System,
+    points: &[Point],
+    rows: &[TradeoffRow],
     share: f64,
-) -> Option<(f64, usize)> {
+) -> Option<f64> {
     let names = cases(rows);
     let ratios = names.iter().flat_map(|case| {
         points.iter().filter_map(|p| {
@@ -35,7 +65,7 @@ pub fn factor_of_estimates(
             Some(found.error? / p.raw_estimate(found.told)?)
         })
     });
-    Some((quantile(ratios, share)?, names.len()))
+    quantile(ratios, share)
 }
 
 /// One run by wish beside its reference.
@@ -167,17 +197,21 @@ mod tests {
     fn the_factor_is_the_quantile_that_covers() {
         // with errors of second order the difference tells the error up to 1/(1 + error): the factor is hardly above one
         let rows = rows(false);
-        let (all, n) = factor_of_estimates(System::Rod, &[COARSE], &rows, 1.0).unwrap();
-        assert_eq!(n, 20);
+        let scale = |share| scale_covering(System::Rod, &[COARSE], &rows, share).unwrap();
+        let (all, half) = (scale(1.0), scale(0.5));
         assert!((all - 1.08).abs() < 1e-9, "{all}");
-        let (half, _) = factor_of_estimates(System::Rod, &[COARSE], &rows, 0.5).unwrap();
         assert!((half - 1.042).abs() < 1e-9, "{half}");
         let covered = |scale| {
             let rows = check_estimates(System::Rod, &[COARSE], scale, &rows);
             rows.iter().filter(|r| r.is_covered()).count()
         };
         assert_eq!((covered(all + 1e-9), covered(half)), (20, 10));
-        assert_eq!(factor_of_estimates(System::Rod, &[COARSE], &[], 0.95), None);
+        // √(0.09/20) = 0.067: of twenty cases, 98.6 % are asked
+        let found = factor_of_estimates(System::Rod, &[COARSE], &rows).unwrap();
+        assert_eq!(found.n_cases, 20);
+        assert!((found.share - 0.98597).abs() < 1e-4, "{}", found.share);
+        assert_eq!(found.scale, scale(found.share));
+        assert_eq!(factor_of_estimates(System::Rod, &[COARSE], &[]), None);
     }
 
     #[test]

@@ -11,7 +11,7 @@ use crate::figures::Quality;
 use crate::provenance::{commit, workspace};
 use crate::{data, interrupt};
 use topo_analysis::{
-    COVERED, CaseSet, CheckRow, Factor, Measured, Point, Record, Stamp, System, TradeoffRow,
+    CaseSet, CheckRow, Factor, Measured, Point, Record, Stamp, System, TradeoffRow,
     check_estimates, compared, factor_of_estimates, ladder, points, read_table, table_hash,
     write_table,
 };
@@ -102,19 +102,21 @@ pub fn measure_set(args: &TradeoffArgs, name: &str, folder: &Path) -> Result<(),
         let mut record: Record = serde_json::from_str(&text(&json)?)
             .map_err(|e| XtaskError::Input(format!("{}: {e}", json.display())))?;
         if set == CaseSet::Factor {
-            let (scale, n_cases) = factor_of_estimates(system, &points, &rows, COVERED)
+            let cover = factor_of_estimates(system, &points, &rows)
                 .ok_or_else(|| XtaskError::Input(format!("no case of {} ran", system.name())))?;
             println!(
-                "{}: {scale:.3} times the raw estimate covers {:.0} % of the errors of {n_cases} cases",
+                "{}: {:.3} times the raw estimate covers {:.1} % of the errors of {} cases",
                 system.name(),
-                100.0 * COVERED
+                cover.scale,
+                100.0 * cover.share,
+                cover.n_cases
             );
             if args.record {
                 record.factor = Some(Factor {
                     table: table_hash(&text(&place(table, "csv"))?),
-                    share: COVERED,
-                    scale,
-                    measured: stamp(table, n_cases),
+                    share: cover.share,
+                    scale: cover.scale,
+                    measured: stamp(table, cover.n_cases),
                 });
                 write_record(table, &record)?;
             }
