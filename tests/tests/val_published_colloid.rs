@@ -4,11 +4,13 @@
 
 use std::path::Path;
 
-use topo_analysis::{NEMATIC_SHARES, NematicRow, NematicScene, Preset};
+use topo_analysis::{DischargeTimes, NEMATIC_SHARES, NematicRow, NematicScene, Preset};
+use topo_core::Interrupt;
 use topo_nematic::{
-    Anchoring, Boundary, ChargeSettings, DischargeSettings, Drive, FlowCoupling, FlowParameters,
-    FlowSolver, FreeSurface, Material, NematicAccuracy, NematicBattery, NematicParameters, Plate,
-    PlateDirector, Precision, Sides, SurfacePattern, SwitchSettings, SwitchTarget,
+    Anchoring, Boundary, ChargeSettings, DischargeSettings, Drive, EnergyParts, FlowCoupling,
+    FlowParameters, FlowSolver, FreeSurface, Material, NematicAccuracy, NematicBattery,
+    NematicParameters, Plate, PlateDirector, Precision, RunHooks, Sides, SurfacePattern,
+    SwitchSettings, SwitchTarget,
 };
 
 #[test]
@@ -206,4 +208,79 @@ fn val_published_sweeps() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes/nematic-paper.toml");
     let file = NematicScene::read(&path).unwrap();
     assert_eq!(file.cases(), NematicScene::published(Preset::Paper).cases());
+}
+
+#[test]
+fn law_units_scale_out_of_a_discharge_with_flow() {
+    // Energies times e, mobility times g and viscosity over g, lengths times l (and L by l²): the same fields, at times over e g, with
+    // energies times e l³ and speeds times e g l.
+    let run = |e: f64, g: f64, l: f64| {
+        let m = Material::default();
+        let material = Material {
+            a: e * m.a,
+            b: e * m.b,
+            c: e * m.c,
+            elastic_constant: e * l * l * m.elastic_constant,
+            rotational_mobility: g * m.rotational_mobility,
+            viscosity: m.viscosity / g,
+            ..m
+        };
+        let parameters = NematicParameters {
+            radius: 6.0 * l,
+            spacing: 1.5 * l,
+            pattern: SurfacePattern::Charge(2),
+            material,
+            ..Default::default()
+        };
+        let battery = NematicBattery::new(&parameters, &NematicAccuracy::default()).unwrap();
+        let charge = ChargeSettings {
+            tolerance: 1e-4 * e,
+            order_tolerance: 1e-3,
+            ..Default::default()
+        };
+        let hooks = &mut RunHooks::new(&Interrupt::new());
+        let charged = battery.charge(&charge, hooks).unwrap();
+        let settings = DischargeSettings {
+            until_released: 0.8,
+            flow: Some(FlowParameters::default()),
+            ..Default::default()
+        };
+        let switched = charged.switch(&SwitchSettings::default()).unwrap();
+        let run = switched.discharge(&settings, hooks).unwrap();
+        assert!(run.is_finished(), "{}", run.record.report.stop);
+        run
+    };
+    // Time and largest speed at which each share is released, and what was dissipated by rotation and by viscosity, in units of l³ e.
+    let read = |e: f64, g: f64, l: f64| {
+        let run = run(e, g, l);
+        let curve = &run.record.curve;
+        let times = [0.1, 0.5, 0.75].map(|share| {
+            let ends = [run.start, 0.0];
+            let times = DischargeTimes::between(curve, &EnergyParts::NAMES, ends, &[share]);
+            times.at(share).unwrap().value * e * g
+        });
+        let unit = e * l * l * l;
+        let ledger = &run.record.report.ledger;
+        let energies = [run.start, ledger.dissipated(0), ledger.dissipated(1)].map(|f| f / unit);
+        let speed = run.record.report.flow.unwrap().max_speed / (e * g * l);
+        assert!(run.record.report.ledger_residual < 0.01);
+        [&times[..], &energies, &[speed]].concat()
+    };
+    let plain = read(1.0, 1.0, 1.0);
+    assert!(plain.iter().all(|x| *x > 1e-3), "{plain:?}");
+    for (e, g, l) in [
+        (2.0, 1.0, 1.0),
+        (1.0, 4.0, 1.0),
+        (1.0, 1.0, 2.0),
+        (0.5, 2.0, 4.0),
+    ] {
+        let scaled = read(e, g, l);
+        println!("{e} {g} {l}: {scaled:?} {plain:?}");
+        for (a, b) in scaled.iter().zip(&plain) {
+            assert!(
+                (a / b - 1.0).abs() < 2e-3,
+                "{e} {g} {l}: {scaled:?} {plain:?}"
+            );
+        }
+    }
 }
