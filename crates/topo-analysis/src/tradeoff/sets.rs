@@ -60,8 +60,8 @@ const EVERY: usize = 10;
 pub(super) fn rods(set: CaseSet) -> Result<Vec<(String, f64)>, AnalysisError> {
     let places: &[usize] = match set {
         CaseSet::Table => &[0],
-        CaseSet::Factor => &[1, 3, 6],
-        CaseSet::Check => &[8],
+        CaseSet::Factor => &[1, 3, 6, 8],
+        CaseSet::Check => &[2, 5],
     };
     let all = ElasticScene::published(Preset::Draft).cases(&KnotTable::builtin())?;
     let named = all

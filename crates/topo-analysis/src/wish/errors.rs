@@ -41,7 +41,8 @@ pub fn errors_of_rods(grant: &Grant, rows: &[SweepRow], coarser: &[SweepRow]) ->
             .filter(|r| r.knot == row.knot && r.twist == row.twist)
             .nth(place(k, rows));
         let coarser = beside.and_then(|r| r.t99);
-        let told = told(row.t99, coarser, grant.point.ratio());
+        let early = (row.t50, beside.and_then(|r| r.t50));
+        let told = told(&[early, (row.t99, coarser)], grant.point.ratio());
         ErrorRow {
             case: format!("{} {:+.2}", row.knot, row.twist),
             cut: Some(row.cut),
@@ -65,7 +66,7 @@ pub fn errors_of_colloids(
         let coarser = beside.and_then(|r| r.t999);
         // grids are fitted to the cell
         let ratio = beside.map_or(grant.point.ratio(), |r| r.spacing / row.spacing);
-        let told = told(row.t999, coarser, ratio);
+        let told = told(&[(row.t999, coarser)], ratio);
         ErrorRow {
             case: row.case_name(),
             cut: None,
@@ -108,6 +109,7 @@ mod tests {
         let row = |knot: &str, cut: f64, t99: Option<f64>| SweepRow {
             knot: knot.to_owned(),
             cut,
+            t50: Some(1.0),
             t99,
             ..SweepRow::default()
         };
@@ -116,20 +118,27 @@ mod tests {
             row("3_1", 0.43, Some(20.0)),
             row("4_1", 0.20, Some(5.0)),
             row("5_1", 0.20, None),
+            row("5_2", 0.20, Some(2.0)),
         ];
         let coarser = [
             row("3_1", 0.11, Some(10.1)),
             row("3_1", 0.44, Some(23.0)),
             row("5_1", 0.2, Some(3.0)),
+            SweepRow {
+                t50: Some(1.09),
+                ..row("5_2", 0.2, Some(2.0))
+            },
         ];
         let found = errors_of_rods(&grant(), &rows, &coarser);
         let errors: Vec<_> = found.iter().map(|r| r.relative_error).collect();
-        // a difference that tells less than half of the 90th percentile counts as that
-        assert!((errors[0].unwrap() - 0.04).abs() < 1e-12);
+        // a difference that tells less than a quarter of the 90th percentile counts as that
+        assert!((errors[0].unwrap() - 0.02).abs() < 1e-12);
         // at twice the edges a difference of 15 % tells an error of 5 %
         assert!((errors[1].unwrap() - 0.10).abs() < 1e-12);
         // without a coarser run nothing is known
         assert_eq!((errors[2], errors[3]), (Some(1.0), None));
+        // where t99 agrees but t50 does not, this tells
+        assert!((errors[4].unwrap() - 0.06).abs() < 1e-12);
     }
 
     #[test]

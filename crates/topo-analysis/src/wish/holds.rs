@@ -175,19 +175,20 @@ mod tests {
                 ("N = 200, 1e-3 h", 1.0 + error),
             ] {
                 let lost = missing && case == 7 && value.contains("200");
-                rows.push(TradeoffRow {
+                let row = |quantity: &str, result: f64| TradeoffRow {
                     system: "rod".to_owned(),
                     case: case.to_string(),
                     setting: "resolution".to_owned(),
                     value: value.to_owned(),
-                    quantity: "t99".to_owned(),
+                    quantity: quantity.to_owned(),
                     result: (!lost).then_some(result),
                     reference: Some(1.0),
                     relative_error: (!lost).then_some(result - 1.0),
                     cpu_seconds: 1.0,
                     peak_bytes: 1,
                     pareto: false,
-                });
+                };
+                rows.extend([row("t50", 1.0), row("t99", result)]);
             }
         }
         rows

@@ -59,14 +59,14 @@ impl Point {
     }
 
     /// Estimate, up to the factor of the table, of the relative error of a run: what the coarser run tells, and no less than
-    /// half of what nine cases of ten stay below. None where nothing is told.
+    /// a quarter of what nine cases of ten stay below. None where nothing is told.
     pub(super) fn raw_estimate(&self, told: Option<f64>) -> Option<f64> {
         told.map(|told| told.max(LEAST * self.high_error))
     }
 }
 
 /// Least estimate, in 90th percentiles of the setting: two runs may agree by chance.
-const LEAST: f64 = 0.5;
+const LEAST: f64 = 0.25;
 
 /// A coarser run should be coarser by more than this: differences to nearer ones are rather those of how a sphere falls on the
 /// lattice, or of ties of contacts.
