@@ -270,7 +270,11 @@ impl Counts {
         self.ten_crossings += usize::from(name.factors()[0].knot.starts_with("10_"));
         let turn = Rotation3::from_euler_angles(0.7, -0.4, 1.9);
         let turned: Vec<V> = x.iter().map(|x| turn * x).collect();
-        assert_eq!(Seen::of(&turned).values(), expected.of(name), "{name}: {x:?}");
+        assert_eq!(
+            Seen::of(&turned).values(),
+            expected.of(name),
+            "{name}: {x:?}"
+        );
     }
 }
 
@@ -307,7 +311,8 @@ fn shaken_closure(word: &[i32], rng: &mut Pcg64) -> Vec<V> {
         }
     }
     let mut noise = || 0.1 * rng.random::<f64>() - 0.05;
-    x.iter_mut().for_each(|x| *x += V::new(noise(), noise(), noise()));
+    x.iter_mut()
+        .for_each(|x| *x += V::new(noise(), noise(), noise()));
     x
 }
 
@@ -328,8 +333,11 @@ fn check_all(n_random: usize, n_sums: usize, n_ten: usize, seed: u64) -> Counts 
         if a.crossing_number + b.crossing_number > 10 {
             continue;
         }
-        let hand = |name: &str, is_mirrored: bool| format!("{}{name}", if is_mirrored { "m" } else { "" });
-        let name = [a, b].map(|k| hand(&k.name, rng.random_bool(0.5))).join("#");
+        let hand =
+            |name: &str, is_mirrored: bool| format!("{}{name}", if is_mirrored { "m" } else { "" });
+        let name = [a, b]
+            .map(|k| hand(&k.name, rng.random_bool(0.5)))
+            .join("#");
         let word = table.get(&name).unwrap().braid.clone();
         counts.check(&shaken_closure(&word, &mut rng), &expected, &table);
         n_made += 1;

@@ -76,10 +76,7 @@ fn what_fits_several_knots_is_called_ambiguous() {
         .clone();
     let kind = identify(&braid(&word), &table).expect("a knot");
     assert_eq!(kind.label(), "8_21|3_1#4_1");
-    assert_eq!(
-        kind.describe(),
-        "consistent with each of 8_21, 3_1#4_1"
-    );
+    assert_eq!(kind.describe(), "consistent with each of 8_21, 3_1#4_1");
     assert!(!kind.is_certain());
 }
 
@@ -502,7 +499,17 @@ fn a_gap_of_the_last_digit_decides() {
         ];
         assert_eq!(identify(&bow, &table).is_err(), touches);
     }
-    // The strand from (1, 1, 0) back ends on the first edge.
+    // The strand into (0, 0, 0) lies in the plane of the next two edges and crosses the second.
+    let crossing = [
+        V::new(0.0, 0.0, 0.0),
+        V::new(4.0, 0.0, 0.0),
+        V::new(0.0, 4.0, 0.0),
+        V::new(0.0, 5.0, 2.0),
+        V::new(3.0, 6.0, 3.0),
+        V::new(4.0, 5.0, 1.0),
+        V::new(3.0, 3.0, 0.0),
+    ];
+    // That into (1, 1, 0) ends on the first edge.
     let touching = [
         V::new(0.0, 0.0, 0.0),
         V::new(2.0, 2.0, 0.0),
@@ -511,8 +518,11 @@ fn a_gap_of_the_last_digit_decides() {
         V::new(0.0, 3.0, 2.0),
         V::new(-1.0, 1.0, 1.0),
     ];
-    assert!(matches!(
-        identify(&touching, &table),
-        Err(KnotError::Degenerate)
-    ));
+    for first in 0..crossing.len() {
+        let mut turned = crossing;
+        turned.rotate_left(first);
+        for x in [&turned[..], &touching] {
+            assert!(matches!(identify(x, &table), Err(KnotError::Degenerate)));
+        }
+    }
 }
