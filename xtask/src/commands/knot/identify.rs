@@ -93,7 +93,10 @@ mod tests {
             closures: 20,
         };
         let text = report(&args, &table).unwrap();
-        assert!(text.starts_with("m3_1, the mirror image of 3_1\n") && text.contains("certain:"));
+        assert!(
+            text.starts_with("m3_1, the mirror image of 3_1 (certain)\n")
+                && text.contains("certain:")
+        );
         args.open = true;
         assert!(report(&args, &table).unwrap().starts_with("m3_1 in "));
         args.file = folder.path().join("two.xyz");
