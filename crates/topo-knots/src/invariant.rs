@@ -2,15 +2,23 @@
 
 mod alexander;
 mod diagram;
+mod field;
 mod goeritz;
 mod jones;
+mod kauffman;
+mod passes;
 mod projection;
 
 use crate::identify::shortened;
 use crate::{KnotError, V};
 
 pub(crate) use diagram::Diagram;
+#[cfg(test)]
+pub(crate) use diagram::Visit;
 pub use jones::Jones;
+pub(crate) use kauffman::{kauffman, kauffman_of_name};
+#[cfg(test)]
+pub(crate) use projection::one_view;
 pub(crate) use projection::{fibonacci_directions, least_crossing, usable_vertices};
 
 /// Directions tried for the projection with the fewest crossings.
@@ -88,6 +96,15 @@ impl Invariants {
         jones::jones(diagram)
     }
 
+    /// Invariants of the unknot.
+    pub(crate) fn unknot() -> Self {
+        Self {
+            alexander: vec![1],
+            determinant: 1,
+            signature: 0,
+        }
+    }
+
     /// The invariants of the mirror image.
     pub fn mirror(&self) -> Self {
         Self {
@@ -122,7 +139,7 @@ impl Invariants {
 }
 
 /// |Delta(-1)|
-fn at_minus_one(alexander: &[i64]) -> u64 {
+pub(crate) fn at_minus_one(alexander: &[i64]) -> u64 {
     let sum = alexander.iter().enumerate().fold(0_i128, |sum, (k, c)| {
         sum + if k % 2 == 0 {
             i128::from(*c)
@@ -139,9 +156,7 @@ fn diagram(vertices: &[V]) -> Result<Diagram, KnotError> {
     if vertices.len() > LONGEST_PROJECTED {
         vertices = shortened(&vertices).into();
     }
-    let mut diagram = least_crossing(&vertices, N_PROJECTIONS, 0).ok_or(KnotError::Degenerate)?;
-    diagram.simplify();
-    Ok(diagram)
+    least_crossing(&vertices, N_PROJECTIONS, 0)
 }
 
 /// Jones polynomial of the closed polygon through `vertices`; `None` if its diagram has more than 60 crossings or is too

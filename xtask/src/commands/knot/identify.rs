@@ -34,7 +34,7 @@ pub(super) fn report(args: &IdentifyArgs, table: &KnotTable) -> Result<String, X
             let _ = writeln!(text, "{}", kind.describe());
             let sureness = if kind.is_certain() {
                 "certain: every knot of so few crossings was compared".to_owned()
-            } else if kind.names.len() == 1 {
+            } else if kind.types().len() == 1 {
                 format!(
                     "consistent: nothing contradicts it, but the table is complete only to {} crossings",
                     table.complete_up_to()
@@ -93,7 +93,10 @@ mod tests {
             closures: 20,
         };
         let text = report(&args, &table).unwrap();
-        assert!(text.starts_with("m3_1, the mirror image of 3_1\n") && text.contains("certain:"));
+        assert!(
+            text.starts_with("m3_1, the mirror image of 3_1 (certain)\n")
+                && text.contains("certain:")
+        );
         args.open = true;
         assert!(report(&args, &table).unwrap().starts_with("m3_1 in "));
         args.file = folder.path().join("two.xyz");
