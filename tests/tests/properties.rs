@@ -290,7 +290,7 @@ proptest! {
         let mirrored: Vec<i32> = word.iter().map(|g| -g).collect();
         let mirrored = kind_of(&mirrored, &table);
         prop_assert_eq!(&mirrored.invariants, &kind.invariants.mirror());
-        prop_assert_eq!(&mirrored.names, &kind.names);
+        prop_assert_eq!(mirrored.types(), kind.types());
         prop_assert_eq!(mirrored.handedness, opposite(kind.handedness));
     }
 }
@@ -364,14 +364,14 @@ proptest! {
         moved.rotate_left(first);
         let seen = identify(&moved, &table).expect("in general position");
         prop_assert_eq!(&seen.invariants, &kind.invariants);
-        prop_assert_eq!((&seen.names, seen.handedness), (&kind.names, kind.handedness));
+        prop_assert_eq!((seen.types(), seen.handedness), (kind.types(), kind.handedness));
         moved.reverse();
         let back = identify(&moved, &table).expect("in general position");
         prop_assert_eq!(&back.invariants, &kind.invariants);
         let mirrored: Vec<V> = x.iter().map(|x| V::new(x.x, x.y, -x.z)).collect();
         let mirrored = identify(&mirrored, &table).expect("in general position");
         prop_assert_eq!(&mirrored.invariants, &kind.invariants.mirror());
-        prop_assert_eq!((&mirrored.names, mirrored.handedness), (&kind.names, opposite(kind.handedness)));
+        prop_assert_eq!((mirrored.types(), mirrored.handedness), (kind.types(), opposite(kind.handedness)));
     }
 }
 

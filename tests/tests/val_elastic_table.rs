@@ -33,7 +33,7 @@ fn start(knot: &str) -> Polyline {
         ..TightenSettings::draft()
     };
     let table = KnotTable::builtin();
-    let tight = tighten_entry(table.get(knot).unwrap(), &settings).unwrap();
+    let tight = tighten_entry(&table.get(knot).unwrap(), &settings).unwrap();
     tight.centreline().unwrap()
 }
 

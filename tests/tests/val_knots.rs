@@ -94,7 +94,7 @@ fn charged_energy(curve: &Polyline, n_edges: usize, twist: f64) -> f64 {
 
 fn tight(name: &str) -> TightKnot {
     let table = KnotTable::builtin();
-    tighten_entry(table.get(name).unwrap(), &TightenSettings::standard()).unwrap()
+    tighten_entry(&table.get(name).unwrap(), &TightenSettings::standard()).unwrap()
 }
 
 fn flipped(curve: &Polyline) -> Polyline {

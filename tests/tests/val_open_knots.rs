@@ -31,7 +31,7 @@ fn check_discharges(names: &[&str], n_edges: usize) {
         ..TightenSettings::draft()
     };
     for name in names {
-        let tight = tighten_entry(table.get(name).unwrap(), &quick).unwrap();
+        let tight = tighten_entry(&table.get(name).unwrap(), &quick).unwrap();
         let line = tight.centreline().unwrap();
         let parameters = RodParameters {
             n_edges,

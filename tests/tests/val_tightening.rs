@@ -11,7 +11,7 @@ use topo_knots::{
 
 fn tight(name: &str, settings: &TightenSettings) -> TightKnot {
     let table = KnotTable::builtin();
-    tighten_entry(table.get(name).unwrap(), settings).unwrap()
+    tighten_entry(&table.get(name).unwrap(), settings).unwrap()
 }
 
 /// Settings without the search: curves that need not be the shortest.

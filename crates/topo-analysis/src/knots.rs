@@ -1,5 +1,6 @@
 //! Tight shapes for a sweep, and the table of knots.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -30,7 +31,7 @@ pub fn tight_shapes(
     interrupt: &Interrupt,
     progress: &(dyn Fn(Event<'_>) + Sync),
 ) -> Result<Shapes, AnalysisError> {
-    let entries: Vec<&KnotEntry> = names
+    let entries: Vec<Cow<'_, KnotEntry>> = names
         .iter()
         .map(|n| table.get(n))
         .collect::<Result<_, _>>()?;
@@ -72,7 +73,7 @@ impl Estimate {
         let mut costs = Vec::new();
         for name in names {
             let entry = table.get(name)?;
-            if !is_kept(entry, settings, &cache) {
+            if !is_kept(&entry, settings, &cache) {
                 let size = (f64::from(entry.crossing_number) / 6.0).powf(CROSSINGS_POWER);
                 costs.push(Cost {
                     seconds: size * (SEARCH_SECONDS * searches + LEVEL_SECONDS * levels),

@@ -16,6 +16,16 @@ pub enum KnotError {
         /// Names in the table that resemble it.
         near: Vec<String>,
     },
+    /// A sum that is not in the table, with a factor that has no braid word to put beside the others.
+    #[error(
+        "`{name}` is not in the table, and cannot be made from its factors as `{factor}` has no braid word; add `braid` to the file of `{factor}`, or a file `{name}.toml` with a curve"
+    )]
+    SumWithoutWord {
+        /// The sum.
+        name: String,
+        /// The factor without a word.
+        factor: String,
+    },
     /// The braid word has no letters.
     #[error(
         "the braid word is empty; give generators such as [1, 1, 1] (the trefoil), or a polygon"

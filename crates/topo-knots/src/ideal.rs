@@ -78,10 +78,10 @@ mod tests {
             n_variants: 0,
             ..TightenSettings::draft()
         };
-        let first = ideal(entry, &settings, Some(&folder)).expect("tight");
-        let path = cache_path(&folder, entry, &settings);
+        let first = ideal(&entry, &settings, Some(&folder)).expect("tight");
+        let path = cache_path(&folder, &entry, &settings);
         assert_eq!(
-            ideal(entry, &settings, Some(&folder)).expect("cached"),
+            ideal(&entry, &settings, Some(&folder)).expect("cached"),
             first
         );
         let sound = std::fs::read(&path).expect("written");
@@ -89,7 +89,7 @@ mod tests {
         corrupt[sound.len() / 2] ^= 1;
         for bad in [&corrupt[..], &sound[..sound.len() - 9], b""] {
             std::fs::write(&path, bad).expect("written");
-            let again = ideal(entry, &settings, Some(&folder)).expect("computed again");
+            let again = ideal(&entry, &settings, Some(&folder)).expect("computed again");
             assert_eq!(again.curve, first.curve);
             load_checkpoint::<TightKnot>(&path, SCHEMA).expect("replaced");
         }
@@ -100,8 +100,8 @@ mod tests {
     fn the_file_depends_on_entry_and_settings() {
         let table = KnotTable::builtin();
         let (a, b) = (
-            table.get("3_1").expect("known"),
-            table.get("m3_1").expect("known"),
+            &*table.get("3_1").expect("known"),
+            &*table.get("m3_1").expect("known"),
         );
         let (draft, standard) = (TightenSettings::draft(), TightenSettings::standard());
         let path = |entry, settings| cache_path(Path::new("c"), entry, settings);

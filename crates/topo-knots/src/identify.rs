@@ -8,8 +8,9 @@ mod reduce;
 use serde::{Deserialize, Serialize};
 
 use crate::invariant::{Diagram, least_crossing, usable_vertices};
-use crate::{Invariants, Jones, KnotError, KnotTable, V, mirror_name};
-use known::{Finding, matches};
+use crate::name::{self, KnotName, UNKNOT};
+use crate::{Invariants, Jones, KnotError, KnotTable, V};
+use known::{Candidate, Found, candidates};
 use reduce::Reducer;
 
 pub use open::{OpenKnotType, identify_open};
@@ -36,19 +37,19 @@ pub enum Handedness {
     Undecided,
 }
 
-/// Type of a closed curve as far as Alexander polynomial, determinant, signature and Jones polynomial tell.
+/// Type of a closed curve as far as Alexander polynomial, determinant, signature, Jones and Kauffman polynomial tell.
 ///
-/// These separate all knots of at most eight crossings, sums included, from each other and their mirror images. Beyond, a name
-/// means that nothing contradicts it: see [`is_certain`](Self::is_certain).
+/// These separate all knots of at most ten crossings, sums included, from each other and their mirror images, but for the hand of
+/// 10_71. Beyond, a name means that nothing contradicts it: see [`is_certain`](Self::is_certain).
 ///
 /// # Validation
-/// `knots_of_eight_crossings_are_told_apart`, `names_the_table_and_its_mirrors`.
+/// `all_types_to_ten_crossings_are_told_apart`, `names_the_table_and_its_mirrors`.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct KnotType {
-    /// Names that fit, of the table or sums of its knots, mirror images under the same name; `0_1` is the unknot; empty if none
-    /// fits.
-    pub names: Vec<String>,
-    /// Handedness with respect to the first name.
+    /// What fits; empty if nothing known does.
+    candidates: Vec<Candidate>,
+    /// Which of the knot and its mirror image it is; undecided if several types fit, or none.
     pub handedness: Handedness,
     /// The invariants found.
     pub invariants: Invariants,
@@ -56,97 +57,141 @@ pub struct KnotType {
     pub jones: Option<Jones>,
     /// Crossings of the simplest diagram that was found.
     pub n_crossings: usize,
-    /// Whether the diagram is so small that every knot it could be was compared.
-    pub exhaustive: bool,
+    /// Crossing number up to which every type was compared.
+    certain_to: u32,
 }
 
 impl KnotType {
     fn unknot(n_crossings: usize) -> Self {
+        let name = || KnotName::parse(UNKNOT);
         Self {
-            names: vec![UNKNOT.to_owned()],
+            candidates: vec![Candidate {
+                name: name(),
+                mirror: name(),
+            }],
             handedness: Handedness::Amphichiral,
-            invariants: Invariants {
-                alexander: vec![1],
-                determinant: 1,
-                signature: 0,
-            },
+            invariants: Invariants::unknot(),
             jones: None,
             n_crossings,
-            exhaustive: n_crossings < LEAST_TRIVIAL_ALEXANDER,
+            certain_to: LEAST_TRIVIAL_ALEXANDER as u32 - 1,
         }
+    }
+
+    /// The names that fit, each with its hand written out: `m3_1` is the mirror image of `3_1`, `0_1` the unknot; none if nothing known
+    /// fits.
+    pub fn candidates(&self) -> impl Iterator<Item = &KnotName> {
+        self.candidates.iter().map(|candidate| &candidate.name)
+    }
+
+    /// The name with its hand, if only one fits.
+    pub fn name(&self) -> Option<&KnotName> {
+        match &self.candidates[..] {
+            [only] => Some(&only.name),
+            _ => None,
+        }
+    }
+
+    /// The types that fit, a type and its mirror image under one name.
+    pub fn types(&self) -> Vec<&KnotName> {
+        let mut types: Vec<&KnotName> = Vec::new();
+        for candidate in &self.candidates {
+            if !types.contains(&candidate.unsided()) {
+                types.push(candidate.unsided());
+            }
+        }
+        types
     }
 
     /// Whether the curve was found to be the unknot.
     pub fn is_unknot(&self) -> bool {
-        self.names.iter().any(|name| name == UNKNOT)
+        self.candidates().any(|name| name.to_string() == UNKNOT)
     }
 
-    /// Whether the name is proved: only one fits, and the diagram has no more crossings than the table is complete for.
+    /// Whether the type is proved: only one fits, and the diagram has so few crossings that every type it could be was compared. The
+    /// hand is too, unless [`handedness`](Self::handedness) is undecided, as that of 10_71.
     pub fn is_certain(&self) -> bool {
-        self.names.len() == 1 && self.exhaustive
+        self.types().len() == 1 && self.is_exhaustive()
     }
 
-    /// The name with its handedness, `m3_1` for the mirror image of `3_1`; several that fit, separated by `|`, those of another
-    /// knot or of a mirror image that the invariants do not tell apart; `unknown(...)` with the Alexander polynomial if none fits.
+    /// Crossing number up to which every type was compared: with a diagram of no more crossings, a name that is the only one is certain.
+    pub fn certain_to(&self) -> u32 {
+        self.certain_to
+    }
+
+    fn is_exhaustive(&self) -> bool {
+        self.n_crossings <= self.certain_to as usize
+    }
+
+    /// The name with its hand, `m3_1` for the mirror image of `3_1`; several that fit, separated by `|`; `unknown(...)` with the
+    /// Alexander polynomial if none fits.
     ///
     /// # Validation
     /// `names_the_table_and_its_mirrors`
     pub fn label(&self) -> String {
-        match (&self.names[..], self.handedness) {
-            ([], _) => format!("{UNKNOWN}{})", self.invariants.alexander_text()),
-            ([name], Handedness::Mirrored) => mirror_name(name),
-            ([name], Handedness::Undecided) => format!("{name}|{}", mirror_name(name)),
-            (names, _) => names.join("|"),
+        if self.candidates.is_empty() {
+            return format!("{UNKNOWN}{})", self.invariants.alexander_text());
         }
+        self.joined("|")
     }
 
-    /// Whether the curve may be the knot `name`, its handedness included: nothing that was found contradicts it.
+    fn joined(&self, joint: &str) -> String {
+        let names: Vec<String> = self.candidates().map(KnotName::to_string).collect();
+        names.join(joint)
+    }
+
+    /// Whether the curve may be the knot `name`, its hand included: nothing that was found contradicts it.
     pub fn fits(&self, name: &str) -> bool {
-        let is = |own: &String| *own == *name;
-        let is_mirror = |own: &String| mirror_name(own) == *name;
-        match (&self.names[..], self.handedness) {
-            ([own], Handedness::Tabulated) => is(own),
-            ([own], Handedness::Mirrored) => is_mirror(own),
-            (names, _) => names.iter().any(|own| is(own) || is_mirror(own)),
-        }
+        let is_amphichiral = |knot: &str| {
+            let alone = |name: &KnotName| !name.is_sum() && name.to_string() == knot;
+            let known = |c: &Candidate| c.name == c.mirror && alone(&c.name);
+            name::is_amphichiral(knot) || self.candidates.iter().any(known)
+        };
+        let name = KnotName::parse_with(name, &is_amphichiral);
+        self.candidates().any(|own| *own == name)
     }
 
-    /// The finding as a sentence: one name with its handedness, `ambiguous: 8_21 or 3_1#4_1`, or `unknown` with the invariants.
+    /// The finding as a sentence: a name with its hand and `(certain)`, `consistent with ...` where the diagram was too large for that,
+    /// `one of 8_21, 3_1#4_1` where several fit, or `unknown` with the invariants.
     pub fn describe(&self) -> String {
-        match &self.names[..] {
-            [] => {
+        let types = self.types();
+        let what = match (&types[..], self.handedness) {
+            ([], _) => {
                 let jones = self.jones.as_ref().map_or_else(String::new, |jones| {
                     format!(", Jones polynomial {}", jones.text())
                 });
-                format!(
-                    "unknown: no knot of the table nor sum of two has Alexander polynomial {}, signature {}{jones}",
+                return format!(
+                    "unknown: no knot of the table nor sum of two or three has Alexander polynomial {}, signature {}{jones}",
                     self.invariants.alexander_text(),
                     self.invariants.signature
-                )
+                );
             }
-            [name] if self.is_unknot() => format!("{name}, the unknot"),
-            [name] => match self.handedness {
-                Handedness::Tabulated => format!("{name}, as in the table"),
-                Handedness::Mirrored => {
-                    format!("{}, the mirror image of {name}", mirror_name(name))
-                }
-                Handedness::Amphichiral => format!("{name}, equal to its mirror image"),
-                Handedness::Undecided => format!("{name} or its mirror image"),
-            },
-            names => format!("ambiguous: {}", names.join(" or ")),
+            ([name], _) if self.is_unknot() => format!("{name}, the unknot"),
+            ([name], Handedness::Tabulated) => format!("{name}, as in the table"),
+            ([name], Handedness::Mirrored) => {
+                format!("{}, the mirror image of {name}", self.label())
+            }
+            ([name], Handedness::Amphichiral) => format!("{name}, equal to its mirror image"),
+            ([name], Handedness::Undecided) => {
+                format!("{name} or its mirror image, handedness unknown")
+            }
+            _ => self.joined(", "),
+        };
+        match (self.is_exhaustive(), types.len()) {
+            (true, 1) => format!("{what} (certain)"),
+            (true, _) => format!("one of {what}"),
+            (false, 1) => format!("consistent with {what}"),
+            (false, _) => format!("consistent with each of {what}"),
         }
     }
 }
 
-/// Name of the unknot.
-const UNKNOT: &str = "0_1";
 /// How the label of a knot begins that has no name.
 pub(crate) const UNKNOWN: &str = "unknown(";
 
 /// The knot type of the closed polygon through `vertices`.
 ///
 /// Vertices are removed while the triangle with their neighbours is free; what is left is projected and simplified,
-/// and its invariants are looked up in the table and among the sums of two of its knots.
+/// and its invariants are looked up among the knots known and the sums of two or three of them.
 ///
 /// # Errors
 /// [`KnotError::TooFewVertices`], [`KnotError::NotFinite`], [`KnotError::Degenerate`] for a curve that runs through itself, and
@@ -196,14 +241,20 @@ fn classify(reducer: &mut Reducer, table: &KnotTable, care: Care) -> Result<Knot
     if invariants.alexander == [1] && n_crossings < LEAST_TRIVIAL_ALEXANDER {
         return Ok(KnotType::unknot(n_crossings));
     }
-    let mut finding = matches(&invariants, None, table);
+    let look_up = |jones: Option<&Jones>| {
+        let found = Found {
+            invariants: &invariants,
+            jones,
+            n_crossings,
+        };
+        candidates(&found, table)
+    };
+    let mut list = look_up(None);
     let mut jones = None;
-    let is_open = finding.names.len() > 1
-        || !finding.names.is_empty() && finding.handedness == Handedness::Undecided;
-    if care == Care::Handed || is_open {
+    if care == Care::Handed || list.len() > 1 {
         jones = Invariants::jones_of(&diagram);
         if jones.is_some() {
-            finding = matches(&invariants, jones.as_ref(), table);
+            list = look_up(jones.as_ref());
         }
     }
     if invariants.alexander == [1] && jones.as_ref().is_none_or(|jones| *jones == Jones::one()) {
@@ -212,15 +263,24 @@ fn classify(reducer: &mut Reducer, table: &KnotTable, care: Care) -> Result<Knot
             ..KnotType::unknot(n_crossings)
         });
     }
-    let Finding { names, handedness } = finding;
     Ok(KnotType {
-        names,
-        handedness,
+        handedness: handedness(&list),
+        candidates: list,
         invariants,
         jones,
         n_crossings,
-        exhaustive: n_crossings <= table.complete_up_to() as usize,
+        certain_to: table.complete_up_to(),
     })
+}
+
+/// The hand that all candidates have in common, if they are of one type.
+fn handedness(list: &[Candidate]) -> Handedness {
+    match list {
+        [only] if only.name == only.mirror => Handedness::Amphichiral,
+        [only] if only.name < only.mirror => Handedness::Tabulated,
+        [_] => Handedness::Mirrored,
+        _ => Handedness::Undecided,
+    }
 }
 
 /// A small diagram of the closed chain in `reducer`; none if it is seen to be the unknot.

@@ -88,6 +88,15 @@ impl Invariants {
         jones::jones(diagram)
     }
 
+    /// Invariants of the unknot.
+    pub(crate) fn unknot() -> Self {
+        Self {
+            alexander: vec![1],
+            determinant: 1,
+            signature: 0,
+        }
+    }
+
     /// The invariants of the mirror image.
     pub fn mirror(&self) -> Self {
         Self {
@@ -122,7 +131,7 @@ impl Invariants {
 }
 
 /// |Delta(-1)|
-fn at_minus_one(alexander: &[i64]) -> u64 {
+pub(crate) fn at_minus_one(alexander: &[i64]) -> u64 {
     let sum = alexander.iter().enumerate().fold(0_i128, |sum, (k, c)| {
         sum + if k % 2 == 0 {
             i128::from(*c)

@@ -1,6 +1,6 @@
 //! Knot table, braid closures, tight shapes, and knot types from coordinates.
 //!
-//! Reading order: `table` (what is known of a knot), `braid`, `curve_file` (coordinates from and to files), `start_file`, `moebius` and `inversion` (curves to start from),
+//! Reading order: `name` (names of knots and sums), `table` (what is known of a knot), `braid`, `curve_file` (coordinates from and to files), `start_file`, `moebius` and `inversion` (curves to start from),
 //! `tighten` (from a loose curve to a tight one, with its certificate), `ideal` (the same, kept on disk),
 //! `invariant` (polynomial, determinant and signature from coordinates) and `identify` (names from coordinates).
 //!
@@ -14,6 +14,7 @@ mod identify;
 mod invariant;
 mod inversion;
 mod moebius;
+mod name;
 mod start_file;
 mod table;
 mod tighten;
@@ -31,7 +32,8 @@ pub use invariant::{
 };
 pub use moebius::relax_moebius;
 pub use start_file::StartCurve;
-pub use table::{Chirality, KnotEntry, KnotTable, mirror_name};
+pub use name::{Factor, KnotName, mirror_name};
+pub use table::{Chirality, KnotEntry, KnotTable};
 pub use tighten::{
     Certificate, SecondOpinion, TightKnot, TightenSettings, second_opinion, struts, tighten,
     tighten_by_hops, tighten_entry,

@@ -1,19 +1,28 @@
 //! The knot table: one TOML file a knot, the built-in ones embedded, others from a folder.
 
-use std::collections::BTreeMap;
+use std::borrow::Cow;
+use std::collections::{BTreeMap, HashSet};
 use std::path::Path;
+use std::sync::{LazyLock, OnceLock};
 
-use crate::KnotError;
 use crate::identify::UNKNOWN;
+use crate::name::{self, Factor, KnotName};
+use crate::KnotError;
 use include_dir::{Dir, include_dir};
 
+mod census;
 mod entry;
 
-pub use entry::{Chirality, KnotEntry, mirror_name};
+pub(crate) use census::numbers;
+pub use entry::{Chirality, KnotEntry};
 
 static BUILTIN: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/knots");
 
 /// All knot types that are known by name.
+///
+/// Those with a file of their own are listed, drawn and tightened as a whole. Of the other primes to ten crossings the built-in table
+/// knows words and invariants, so that they, and sums of anything, are found by [`get`](Self::get) and named by
+/// [`identify`](crate::identify).
 ///
 /// # Validation
 /// `builtin_table_is_complete`.
@@ -24,6 +33,17 @@ pub struct KnotTable {
     /// Where each name, alias and mirror image is found; the flag is set for mirror images.
     names: BTreeMap<String, (Rank, bool)>,
     mirrors: BTreeMap<Rank, KnotEntry>,
+    /// Whether the primes to ten crossings without a file are known too.
+    with_census: bool,
+    derived: OnceLock<Derived>,
+}
+
+/// What follows from the entries, found when it is first asked for.
+#[derive(Debug, Clone)]
+struct Derived {
+    /// The prime knots known without a file.
+    census: Vec<&'static KnotEntry>,
+    complete_up_to: u32,
 }
 
 /// How many prime knots there are of each crossing number, mirror images left out.
@@ -52,9 +72,19 @@ fn rank(entry: &KnotEntry) -> Rank {
 }
 
 impl KnotTable {
-    /// The table that comes with the crate: the unknot, the 35 prime knots of up to eight crossings, 10_124 and three sums of knots.
+    /// The table that comes with the crate: the unknot, the 35 prime knots of up to eight crossings, 10_124 and three sums of knots; without a
+    /// file, words and invariants of the other primes to ten crossings.
     pub fn builtin() -> Self {
-        let mut table = Self::default();
+        static TABLE: LazyLock<KnotTable> = LazyLock::new(KnotTable::embedded);
+        TABLE.clone()
+    }
+
+    /// The built-in table, read from its files.
+    fn embedded() -> Self {
+        let mut table = Self {
+            with_census: true,
+            ..Self::default()
+        };
         for file in BUILTIN.files().filter(|f| is_toml(f.path())) {
             // The files are part of the crate: the test `builtin_table_is_complete` reads each of them.
             let Some(text) = file.contents_utf8() else {
@@ -121,40 +151,129 @@ impl KnotTable {
                 self.names.insert(name.clone(), (rank.clone(), mirrored));
             }
         }
+        self.derived = OnceLock::new();
         self.mirrors.insert(rank.clone(), mirror);
         self.entries.insert(rank, entry);
     }
 
-    /// The knot of that name or alias; `m3_1` is the mirror image of `3_1`, `granny` the knot `3_1#3_1`.
+    /// The knot of that name or alias; `m3_1` is the mirror image of `3_1`, `granny` the knot `3_1#3_1`; a sum that has no file is made
+    /// from its factors.
     ///
     /// # Errors
-    /// [`KnotError::UnknownKnot`] with the names that come near.
-    pub fn get(&self, name: &str) -> Result<&KnotEntry, KnotError> {
-        let known = self.names.get(name).and_then(|(rank, mirrored)| {
-            if *mirrored {
-                self.mirrors.get(rank)
-            } else {
-                self.entries.get(rank)
+    /// [`KnotError::UnknownKnot`] with the names that come near, [`KnotError::SumWithoutWord`] for a sum that cannot be made.
+    ///
+    /// # Validation
+    /// `any_sum_and_any_prime_to_ten_crossings_is_found`
+    pub fn get(&self, name: &str) -> Result<Cow<'_, KnotEntry>, KnotError> {
+        if let Some(entry) = self.listed(name) {
+            return Ok(Cow::Borrowed(entry));
+        }
+        let sum = self.canonical_name(name);
+        if name.contains('#') {
+            if let Some(entry) = self.listed(&sum.to_string()) {
+                return Ok(Cow::Borrowed(entry));
             }
-        });
-        known.ok_or_else(|| {
-            let mut near: Vec<(usize, &String)> = self
-                .names
-                .iter()
-                .filter(|(_, (_, mirrored))| !mirrored)
-                .map(|(known, _)| (edit_distance(name, known), known))
-                .collect();
-            near.sort();
-            let near = near
-                .iter()
-                .filter(|(d, _)| *d <= 2)
-                .take(4)
-                .map(|(_, k)| (*k).clone());
-            KnotError::UnknownKnot {
-                name: name.to_owned(),
-                near: near.collect(),
+        }
+        if !sum.is_sum() {
+            return self.of_census(name).ok_or_else(|| self.unknown(name));
+        }
+        let factor = |factor: &Factor| self.get(&factor.to_string());
+        let factors = sum.factors().iter().map(factor);
+        let factors = factors.collect::<Result<Vec<_>, _>>()?;
+        KnotEntry::sum(&sum, &factors, &|knot| self.is_amphichiral(knot)).map(Cow::Owned)
+    }
+
+    /// The entry that a file gave, or its mirror image.
+    fn listed(&self, name: &str) -> Option<&KnotEntry> {
+        let (rank, mirrored) = self.names.get(name)?;
+        if *mirrored {
+            self.mirrors.get(rank)
+        } else {
+            self.entries.get(rank)
+        }
+    }
+
+    /// The prime knots known without a file.
+    pub(crate) fn census(&self) -> impl Iterator<Item = &KnotEntry> {
+        self.derived().census.iter().copied()
+    }
+
+    fn derived(&self) -> &Derived {
+        self.derived.get_or_init(|| {
+            let all = if self.with_census {
+                census::entries()
+            } else {
+                &[]
+            };
+            let is_listed = |name: &str| self.names.contains_key(name);
+            let census: Vec<_> = all.iter().filter(|knot| !is_listed(&knot.name)).collect();
+            let own = census.iter().map(|knot| knot.name.as_str());
+            let known: HashSet<&str> = self.names.keys().map(String::as_str).chain(own).collect();
+            let all = |&(crossings, n): &(u32, u32)| {
+                (1..=n).all(|k| known.contains(format!("{crossings}_{k}").as_str()))
+            };
+            let complete = N_PRIMES.iter().take_while(|c| all(c)).last();
+            Derived {
+                complete_up_to: complete.map_or(2, |(crossings, _)| *crossings),
+                census,
             }
         })
+    }
+
+    fn of_census(&self, name: &str) -> Option<Cow<'_, KnotEntry>> {
+        let known = |name: &str| self.census().find(|knot| knot.name == name);
+        match (known(name), name.strip_prefix('m')) {
+            (Some(entry), _) => Some(Cow::Borrowed(entry)),
+            (None, Some(base)) => known(base).map(|entry| Cow::Owned(entry.mirror())),
+            (None, None) => None,
+        }
+    }
+
+    fn unknown(&self, name: &str) -> KnotError {
+        let mut near: Vec<(usize, &String)> = self
+            .names
+            .iter()
+            .filter(|(_, (_, mirrored))| !mirrored)
+            .map(|(known, _)| known)
+            .chain(self.census().map(|knot| &knot.name))
+            .map(|known| (edit_distance(name, known), known))
+            .collect();
+        near.sort();
+        let near = near
+            .iter()
+            .filter(|(d, _)| *d <= 2)
+            .take(4)
+            .map(|(_, k)| (*k).clone());
+        KnotError::UnknownKnot {
+            name: name.to_owned(),
+            near: near.collect(),
+        }
+    }
+
+    /// Whether a knot equals its mirror image, as its file or the published tables say.
+    pub(crate) fn is_amphichiral(&self, knot: &str) -> bool {
+        match self.listed(knot) {
+            Some(entry) => entry.chirality == Chirality::Amphichiral,
+            None => name::is_amphichiral(knot),
+        }
+    }
+
+    /// The one name of a type: aliases replaced, factors in order, no `m` at those that equal their mirror image.
+    ///
+    /// # Validation
+    /// `labels_of_mirror_images`
+    pub fn canonical_name(&self, name: &str) -> KnotName {
+        let is_amphichiral = |knot: &str| self.is_amphichiral(knot);
+        let factors = name.split('#').flat_map(|text| {
+            let known = self.names.get(text);
+            let base = known.map_or(text, |((.., base), _)| base);
+            let name = KnotName::parse_with(base, &is_amphichiral);
+            match known {
+                Some((_, true)) => name.mirror_with(&is_amphichiral).into_factors(),
+                _ => name.into_factors(),
+            }
+        });
+        KnotName::of(factors.collect())
     }
 
     /// The label of the mirror image of what [`KnotType::label`](crate::KnotType::label) calls `label`.
@@ -162,28 +281,17 @@ impl KnotTable {
     /// # Validation
     /// `labels_of_mirror_images`
     pub fn mirror_label(&self, label: &str) -> String {
-        let is_amphichiral = |name: &str| {
-            let known = |name: &str| self.get(name).map(|knot| knot.chirality);
-            match known(name) {
-                Ok(chirality) => chirality == Chirality::Amphichiral,
-                // a sum that is not in the table
-                Err(_) => name
-                    .split('#')
-                    .all(|factor| known(factor).is_ok_and(|c| c == Chirality::Amphichiral)),
-            }
-        };
         if label.is_empty() || label.starts_with(UNKNOWN) {
             return label.to_owned();
         }
+        let mirror = |name: &str| {
+            let name = self.canonical_name(name);
+            name.mirror_with(&|knot| self.is_amphichiral(knot))
+                .to_string()
+        };
         let names: Vec<&str> = label.split('|').collect();
-        let mirrored: Vec<String> = names
-            .iter()
-            .map(|name| match is_amphichiral(name) {
-                true => (*name).to_owned(),
-                false => mirror_name(name),
-            })
-            .collect();
-        // `6_1|m6_1`: the handedness is not known, nor is that of the mirror image
+        let mirrored: Vec<String> = names.iter().map(|name| mirror(name)).collect();
+        // `10_71|m10_71`: the handedness is not known, nor is that of the mirror image
         if mirrored.iter().all(|name| names.contains(&name.as_str())) {
             return label.to_owned();
         }
@@ -209,11 +317,7 @@ impl KnotTable {
 
     /// The crossing number up to which no prime knot is missing.
     pub fn complete_up_to(&self) -> u32 {
-        let all = |&(crossings, n): &(u32, u32)| {
-            (1..=n).all(|k| self.names.contains_key(&format!("{crossings}_{k}")))
-        };
-        let complete = N_PRIMES.iter().take_while(|c| all(c)).last();
-        complete.map_or(2, |(crossings, _)| *crossings)
+        self.derived().complete_up_to
     }
 
     /// Number of knots, mirror images left out.

@@ -23,7 +23,7 @@ pub fn run(args: &KnotArgs) -> Result<(), XtaskError> {
             Ok(())
         }
         KnotCommand::Show { name } => {
-            print!("{}", show::entry(table.get(name)?));
+            print!("{}", show::entry(&*table.get(name)?));
             Ok(())
         }
     }

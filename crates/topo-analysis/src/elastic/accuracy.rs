@@ -198,7 +198,7 @@ pub fn measure_accuracy(
                 measured_discharge(&job, site, interrupt).map(|found| (found, clock.seconds()))
             };
             let (coarse, cpu_seconds) = run(scene, CutSite::MaximumEnergyDensity)?;
-            let exact = exact_discharge(scene, &case, table.get(&name)?, coarse.cut);
+            let exact = exact_discharge(scene, &case, &*table.get(&name)?, coarse.cut);
             let (reference, cpu_seconds_reference) = match exact {
                 Some(exact) => (exact, 0.0),
                 None => run(&fine, CutSite::At(coarse.cut))?,
@@ -243,7 +243,7 @@ mod tests {
         let scene = ElasticScene::published(Preset::Draft);
         let exact = |knot: &str, twist: f64| {
             let case = scene.case(knot, Some(twist));
-            exact_discharge(&scene, &case, table.get(knot).unwrap(), 0.0)
+            exact_discharge(&scene, &case, &table.get(knot).unwrap(), 0.0)
         };
         let circle = exact("0_1", 0.0).unwrap();
         assert!((circle.t50.unwrap() - 2.459134).abs() < 5e-6);

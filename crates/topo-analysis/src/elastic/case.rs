@@ -97,7 +97,7 @@ pub(crate) fn charge(
     }
     let from = |battery: &RodBattery| battery.charge(&scene.charge, interrupt).map_err(refuse);
     let charged = from(&battery)?;
-    if !starts_from_two_images(case, entry) {
+    if !starts_from_two_images(case, &entry) {
         return Ok(ChargedCase {
             rod: charged,
             energy_other_image: None,
@@ -366,7 +366,7 @@ mod tests {
             n_kicks: 0,
             ..TightenSettings::draft()
         };
-        let tight = tighten_entry(entry, &quick).unwrap();
+        let tight = tighten_entry(&entry, &quick).unwrap();
         let mut scene = ElasticScene::published(Preset::Draft);
         (scene.rod.n_edges, scene.imperfection) = (80, 0.0);
         let of = |rod: &ChargedRod| rod.record().samples.last().unwrap().elastic();
@@ -430,7 +430,7 @@ mod tests {
             ("6_2", Some(0.5), false),
         ] {
             let entry = table.get(knot).unwrap();
-            assert_eq!(starts_from_two_images(&case(knot, twist), entry), two);
+            assert_eq!(starts_from_two_images(&case(knot, twist), &entry), two);
         }
     }
 }

@@ -223,7 +223,7 @@ pub(super) fn write_case(made: &MadeCase<'_>, folder: &Path) -> Result<(), Analy
         .fold(charged.record().report.ledger_residual, f64::max);
     let run = json!({
         "schema": "topo-elastic-case/1",
-        "fingerprint": fingerprint(scene, case, entry),
+        "fingerprint": fingerprint(scene, case, &entry),
         "case": case,
         "scene": scene,
         "seed": scene.seed,

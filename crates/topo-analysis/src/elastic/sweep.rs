@@ -168,7 +168,7 @@ fn plan(
     let mut found = Vec::with_capacity(cases.len());
     for (k, case) in cases.iter().enumerate() {
         let entry = table.get(&case.knot)?;
-        let mark = fingerprint(scene, case, entry);
+        let mark = fingerprint(scene, case, &entry);
         found.push(if settings.fresh && settings.takes(k) {
             Earlier::None
         } else {

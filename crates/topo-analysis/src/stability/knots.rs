@@ -82,8 +82,8 @@ fn named(curve: Result<Polyline, String>, expected: &str) -> Verdict {
         Err(refused) => return Verdict::stopped(format!("refused: {refused}"), 0),
     };
     match identify(curve.vertices(), &KnotTable::builtin()) {
-        Ok(kind) if kind.names.iter().any(|n| n == expected) => Verdict::converged(0),
-        Ok(kind) if kind.names.is_empty() => {
+        Ok(kind) if kind.types().iter().any(|n| n.to_string() == expected) => Verdict::converged(0),
+        Ok(kind) if kind.types().is_empty() => {
             Verdict::stopped(format!("unknown type: {}", kind.label()), 0)
         }
         Ok(kind) => Verdict::stopped(format!("named {}", kind.label()), 1),

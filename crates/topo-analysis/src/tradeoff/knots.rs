@@ -27,7 +27,7 @@ pub(super) fn trials(effort: Effort) -> Result<Vec<Trial>, AnalysisError> {
     };
     let mut trials = Vec::new();
     for name in names {
-        let entry = table.get(&name)?.clone();
+        let entry = table.get(&name)?.into_owned();
         let published = entry.length_over_radius;
         trials.push(Trial {
             case: name.clone(),

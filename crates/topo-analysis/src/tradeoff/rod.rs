@@ -253,7 +253,7 @@ impl Starts {
                     .get(&case.knot)
                     .ok()
                     .filter(|_| setting == super::REFERENCE)
-                    .and_then(|entry| exact_discharge(&scene, &of, entry, site));
+                    .and_then(|entry| exact_discharge(&scene, &of, &entry, site));
                 let found = exact.or(found.flatten());
                 Ok(Some(Outcome {
                     quantities: vec![

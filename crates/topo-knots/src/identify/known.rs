@@ -1,228 +1,176 @@
-//! Which knots of the table, and which sums of two of them, have given invariants.
+//! Which knots, and which sums of two or three, have given invariants.
 
-use std::borrow::Cow;
+use serde::{Deserialize, Serialize};
 
-use super::Handedness;
+use crate::name::{Factor, KnotName, rolfsen};
 use crate::{Chirality, Invariants, Jones, KnotEntry, KnotTable};
 
-/// Names that fit, and the handedness with respect to the first.
-pub(super) struct Finding {
-    pub names: Vec<String>,
-    pub handedness: Handedness,
+/// A type that fits, with the name of its mirror image.
+#[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub(super) struct Candidate {
+    pub name: KnotName,
+    pub mirror: KnotName,
 }
 
-/// A knot that may be the one looked for.
-struct Known<'a> {
-    name: Cow<'a, str>,
-    signature: i32,
-    jones: Option<Cow<'a, Jones>>,
-    amphichiral: bool,
-}
-
-impl Known<'_> {
-    /// Which of the knot and its mirror image have the invariants; none if neither has.
-    fn compare(&self, signature: i32, jones: Option<&Jones>) -> Option<Handedness> {
-        let fits = |mirrored: bool| {
-            let turned = if mirrored {
-                -self.signature
-            } else {
-                self.signature
-            };
-            turned == signature
-                && match (jones, &self.jones) {
-                    (Some(found), Some(own)) if mirrored => *found == own.mirror(),
-                    (Some(found), Some(own)) => *found == **own,
-                    _ => true,
-                }
-        };
-        match (fits(false), fits(true)) {
-            (false, false) => None,
-            _ if self.amphichiral => Some(Handedness::Amphichiral),
-            (true, true) => Some(Handedness::Undecided),
-            (true, false) => Some(Handedness::Tabulated),
-            (false, true) => Some(Handedness::Mirrored),
-        }
+impl Candidate {
+    /// The name of the type or of its mirror image, whichever stands first.
+    pub fn unsided(&self) -> &KnotName {
+        (&self.name).min(&self.mirror)
     }
 }
 
-/// The knots of the table, then the sums of two, that have the invariants, and the Jones polynomial where it is known.
-pub(super) fn matches(found: &Invariants, jones: Option<&Jones>, table: &KnotTable) -> Finding {
-    let mut finding = Finding {
-        names: Vec::new(),
-        handedness: Handedness::Undecided,
+/// What was found of a curve, to be looked up.
+pub(super) struct Found<'a> {
+    pub invariants: &'a Invariants,
+    /// `None` where it was not computed.
+    pub jones: Option<&'a Jones>,
+    /// Crossings of its diagram: no knot with a larger crossing number can have it.
+    pub n_crossings: usize,
+}
+
+/// The prime knots known, then the sums of two or three of them, that have the invariants found; each hand by itself.
+pub(super) fn candidates(found: &Found<'_>, table: &KnotTable) -> Vec<Candidate> {
+    let mut search = Search {
+        found,
+        table,
+        primes: Vec::new(),
+        list: Vec::new(),
     };
-    let mut compare = |known: &Known<'_>| {
-        if let Some(sense) = known.compare(found.signature, jones) {
-            if finding.names.is_empty() {
-                finding.handedness = sense;
+    let known = || table.iter().chain(table.census());
+    for knot in known().filter(|knot| !knot.is_unknot()) {
+        let divides = |whole: u64, part: u64| part != 0 && whole.is_multiple_of(part);
+        if divides(found.invariants.determinant, knot.invariants.determinant)
+            && least_crossings(knot) <= found.n_crossings
+        {
+            search.compare(&[knot]);
+            if !knot.is_composite() {
+                search.primes.push(knot);
             }
-            finding.names.push(known.name.clone().into_owned());
-        }
-    };
-    for knot in table.iter().filter(|knot| !knot.is_unknot()) {
-        if knot.invariants.alexander == found.alexander {
-            compare(&Known {
-                name: Cow::Borrowed(&knot.name),
-                signature: knot.invariants.signature,
-                jones: knot.jones.as_ref().map(Cow::Borrowed),
-                amphichiral: knot.chirality == Chirality::Amphichiral,
-            });
         }
     }
-    for sum in sums(found, table) {
-        compare(&sum);
-    }
-    finding
+    search.list.sort_by_key(|c| {
+        let (crossings, place) = rolfsen(&c.unsided().to_string()).unwrap_or((u32::MAX, 0));
+        (c.name.is_sum(), crossings, place)
+    });
+    search.sums();
+    search.list
 }
 
-/// Sums of two knots of the table, not themselves in it, that have the Alexander polynomial looked for.
-fn sums<'a>(found: &Invariants, table: &KnotTable) -> Vec<Known<'a>> {
-    let mut sums: Vec<Known<'a>> = Vec::new();
-    for (k, a) in table.iter().enumerate() {
-        let divides = found.determinant.is_multiple_of(a.invariants.determinant);
-        if !divides || a.is_composite() || a.is_unknot() {
-            continue;
+/// Crossing number of a knot of the published tables; of another, whose file may give too many, none.
+fn least_crossings(knot: &KnotEntry) -> usize {
+    let factors = knot.name.split('#').map(|f| f.trim_start_matches('m'));
+    factors
+        .map(|factor| rolfsen(factor).map_or(0, |(crossings, _)| crossings as usize))
+        .sum()
+}
+
+struct Search<'a> {
+    found: &'a Found<'a>,
+    table: &'a KnotTable,
+    /// Those whose determinant divides the one looked for.
+    primes: Vec<&'a KnotEntry>,
+    list: Vec<Candidate>,
+}
+
+impl<'a> Search<'a> {
+    /// Sums of two and of three.
+    fn sums(&mut self) {
+        let primes = std::mem::take(&mut self.primes);
+        let determinant = self.found.invariants.determinant;
+        let fits = |knots: &[&KnotEntry]| {
+            knots.iter().map(|k| least_crossings(k)).sum::<usize>() <= self.found.n_crossings
+                && knots
+                    .iter()
+                    .map(|k| k.invariants.alexander.len() - 1)
+                    .sum::<usize>()
+                    < self.found.invariants.alexander.len()
+        };
+        let mut pairs: Vec<[&'a KnotEntry; 2]> = Vec::new();
+        let mut triples: Vec<[&'a KnotEntry; 3]> = Vec::new();
+        for (i, a) in primes.iter().enumerate() {
+            for (j, b) in primes.iter().enumerate().skip(i) {
+                let Some(two) = a
+                    .invariants
+                    .determinant
+                    .checked_mul(b.invariants.determinant)
+                else {
+                    continue;
+                };
+                if !determinant.is_multiple_of(two) || !fits(&[a, b]) {
+                    continue;
+                }
+                if two == determinant {
+                    pairs.push([a, b]);
+                }
+                for c in &primes[j..] {
+                    if determinant / two == c.invariants.determinant && fits(&[a, b, c]) {
+                        triples.push([a, b, c]);
+                    }
+                }
+            }
         }
-        for b in table.iter().skip(k) {
-            if a.invariants.determinant * b.invariants.determinant != found.determinant
-                || a.invariants.sum(&b.invariants).alexander != found.alexander
+        pairs.iter().for_each(|knots| self.compare(knots));
+        triples.iter().for_each(|knots| self.compare(knots));
+    }
+
+    /// Lists the sum of the knots, with every choice of hands that fits.
+    fn compare(&mut self, knots: &[&KnotEntry]) {
+        let found = self.found;
+        let product = |sum: Invariants, k: &&KnotEntry| sum.sum(&k.invariants);
+        let plain = knots.iter().fold(Invariants::unknot(), product);
+        if plain.alexander != found.invariants.alexander {
+            return;
+        }
+        for hands in 0..1_u32 << knots.len() {
+            let is_mirrored = |k: usize| hands >> k & 1 == 1;
+            let signature: i32 = knots
+                .iter()
+                .enumerate()
+                .map(|(k, knot)| match is_mirrored(k) {
+                    true => -knot.invariants.signature,
+                    false => knot.invariants.signature,
+                })
+                .sum();
+            let is_turned = |(k, knot): (usize, &&KnotEntry)| {
+                is_mirrored(k) && knot.chirality == Chirality::Amphichiral
+            };
+            if signature != found.invariants.signature || knots.iter().enumerate().any(is_turned) {
+                continue;
+            }
+            if let Some(jones) = found.jones
+                && product_of_jones(knots, is_mirrored).is_some_and(|own| own != *jones)
             {
                 continue;
             }
-            let mirrored = a.mirror();
-            for first in [a, &mirrored] {
-                let sum = sum(first, b, table);
-                if table.get(&sum.name).is_err() && sums.iter().all(|s| s.name != sum.name) {
-                    sums.push(sum);
-                }
-            }
+            self.push(knots, is_mirrored);
         }
     }
-    sums
+
+    fn push(&mut self, knots: &[&KnotEntry], is_mirrored: impl Fn(usize) -> bool) {
+        let is_amphichiral = |knot: &str| self.table.is_amphichiral(knot);
+        let factors = knots.iter().enumerate().flat_map(|(k, knot)| {
+            let name = KnotName::parse_with(&knot.name, &is_amphichiral);
+            let turned = is_mirrored(k).then(|| name.mirror_with(&is_amphichiral));
+            turned.unwrap_or(name).into_factors()
+        });
+        let name = KnotName::of(factors.collect::<Vec<Factor>>());
+        if self.list.iter().all(|c| c.name != name) {
+            let mirror = name.mirror_with(&is_amphichiral);
+            self.list.push(Candidate { name, mirror });
+        }
+    }
 }
 
-/// The sum of two knots, or its mirror image, whichever has the simpler name.
-fn sum<'a>(a: &KnotEntry, b: &KnotEntry, table: &KnotTable) -> Known<'a> {
-    let mut factors: Vec<Factor> = [a, b]
+/// Jones polynomial of the sum; `None` if that of a factor is not known.
+fn product_of_jones(knots: &[&KnotEntry], is_mirrored: impl Fn(usize) -> bool) -> Option<Jones> {
+    knots
         .iter()
-        .flat_map(|knot| knot.name.split('#'))
-        .map(|name| Factor::of(name, table))
-        .collect();
-    let mut flipped = factors.clone();
-    flipped.iter_mut().for_each(|f| f.mirrored ^= f.chiral);
-    factors.sort();
-    flipped.sort();
-    let signature = a.invariants.signature + b.invariants.signature;
-    let jones = match (&a.jones, &b.jones) {
-        (Some(a), Some(b)) => a.product(b),
-        _ => None,
-    };
-    let amphichiral = factors == flipped;
-    let (factors, signature, jones) = if flipped < factors {
-        (flipped, -signature, jones.map(|jones| jones.mirror()))
-    } else {
-        (factors, signature, jones)
-    };
-    let names: Vec<String> = factors.iter().map(Factor::name).collect();
-    Known {
-        name: Cow::Owned(names.join("#")),
-        signature,
-        jones: jones.map(Cow::Owned),
-        amphichiral,
-    }
-}
-
-/// A prime factor of a sum; the order is that in which factors are named.
-#[derive(Clone, PartialEq, Eq, PartialOrd, Ord)]
-struct Factor {
-    place: usize,
-    mirrored: bool,
-    base: String,
-    chiral: bool,
-}
-
-impl Factor {
-    fn of(name: &str, table: &KnotTable) -> Self {
-        let base = name.strip_prefix('m').unwrap_or(name);
-        let entry = table.iter().enumerate().find(|(_, k)| k.name == base);
-        let chiral = entry.is_none_or(|(_, k)| k.chirality == Chirality::Chiral);
-        Self {
-            place: entry.map_or(usize::MAX, |(place, _)| place),
-            mirrored: chiral && base != name,
-            base: base.to_owned(),
-            chiral,
-        }
-    }
-
-    fn name(&self) -> String {
-        let prefix = if self.mirrored { "m" } else { "" };
-        format!("{prefix}{}", self.base)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn sums_have_one_name_each() {
-        let table = KnotTable::builtin();
-        let name = |a: &str, b: &str| {
-            let (a, b) = (table.get(a).expect(a), table.get(b).expect(b));
-            sum(a, b, &table).name.into_owned()
-        };
-        assert_eq!(name("5_2", "m3_1"), "3_1#m5_2");
-        assert_eq!(name("m5_2", "3_1"), "3_1#m5_2");
-        assert_eq!(name("m3_1", "m5_2"), "3_1#5_2");
-        assert_eq!(name("4_1", "m4_1"), "4_1#4_1");
-        assert_eq!(name("m5_2", "4_1"), "4_1#5_2");
-        assert_eq!(name("m3_1", "3_1#m3_1"), "3_1#3_1#m3_1");
-    }
-
-    /// Every knot of at most eight crossings, sums included, has invariants of its own.
-    #[test]
-    fn knots_of_eight_crossings_are_told_apart() {
-        let table = KnotTable::builtin();
-        let mut all: Vec<(String, Invariants, Option<Jones>)> = Vec::new();
-        for knot in table
-            .iter()
-            .filter(|k| (1..=8).contains(&k.crossing_number))
-        {
-            all.push((
-                knot.name.clone(),
-                knot.invariants.clone(),
-                knot.jones.clone(),
-            ));
-        }
-        for (a, b) in [("3_1", "5_1"), ("3_1", "5_2"), ("4_1", "4_1")] {
-            let (a, b) = (table.get(a).expect(a), table.get(b).expect(b));
-            for a in [a.clone(), a.mirror()] {
-                let known = sum(&a, b, &table);
-                let invariants = a.invariants.sum(&b.invariants);
-                let invariants = if known.signature == invariants.signature {
-                    invariants
-                } else {
-                    invariants.mirror()
-                };
-                all.push((
-                    known.name.into_owned(),
-                    invariants,
-                    known.jones.map(Cow::into_owned),
-                ));
+        .enumerate()
+        .try_fold(Jones::one(), |product, (k, knot)| {
+            let own = knot.jones.as_ref()?;
+            match is_mirrored(k) {
+                true => product.product(&own.mirror()),
+                false => product.product(own),
             }
-        }
-        assert_eq!(all.len(), 35 + 3 + 6);
-        let mut n_ambiguous = 0;
-        for (name, invariants, jones) in &all {
-            let jones = jones.as_ref().expect("known");
-            let found = matches(invariants, Some(jones), &table);
-            assert_eq!(found.names, [name.as_str()]);
-            assert_ne!(found.handedness, Handedness::Undecided, "{name}");
-            let mirror = matches(&invariants.mirror(), Some(&jones.mirror()), &table);
-            assert_eq!(mirror.names, [name.as_str()]);
-            n_ambiguous += usize::from(matches(invariants, None, &table).names.len() > 1);
-        }
-        // The Jones polynomial was needed.
-        assert!(n_ambiguous >= 4, "{n_ambiguous}");
-    }
+        })
 }

@@ -1,14 +1,16 @@
 //! One knot of the table, read from its TOML file and checked on the way.
 
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 use topo_core::Polyline;
 
 use crate::braid::check_word;
+use crate::name::{KnotName, is_mirror_image, mirror_name};
 use crate::start_file::StartCurve;
 use crate::{
-    Handedness, Invariants, Jones, KnotError, KnotTable, KnotType, V, closed_braid, identify,
+    Invariants, Jones, KnotError, KnotTable, KnotType, V, closed_braid, identify,
     jones_polynomial,
 };
 
@@ -122,6 +124,14 @@ impl KnotEntry {
             signature,
             jones,
         } = file.invariants;
+        let canonical = KnotName::parse(&file.name).to_string();
+        if file.name != canonical || file.name.starts_with('m') && !file.name.contains('#') {
+            return Err(fault(format!(
+                "`name` = `{}`: a leading `m` is that of a mirror image, and factors stand in the order of the table; `{}` would do",
+                file.name,
+                canonical.trim_start_matches('m')
+            )));
+        }
         if path
             .file_stem()
             .is_none_or(|stem| stem != file.name.as_str())
@@ -293,19 +303,10 @@ impl KnotEntry {
 
     /// The entry of the table for a type, mirrored if need be, or a new one without a start; true if it is of the table.
     fn of_type(kind: &KnotType, table: &KnotTable) -> Result<(Self, bool), KnotError> {
-        if let ([name], true) = (&kind.names[..], kind.is_certain())
-            && kind.handedness != Handedness::Undecided
-            && let Ok(entry) = table.get(name)
+        if let (true, Some(name)) = (kind.is_certain(), kind.name())
+            && let Ok(entry) = table.get(&name.to_string())
         {
-            let mirrored = kind.handedness == Handedness::Mirrored;
-            return Ok((
-                if mirrored {
-                    entry.mirror()
-                } else {
-                    entry.clone()
-                },
-                true,
-            ));
+            return Ok((entry.into_owned(), true));
         }
         let own = Self {
             name: if kind.is_unknot() { "0_1" } else { "unnamed" }.to_owned(),
@@ -327,6 +328,51 @@ impl KnotEntry {
         Ok((own, false))
     }
 
+    /// The entry of a sum: words side by side, and what follows from the factors; `is_amphichiral` as for names.
+    ///
+    /// # Errors
+    /// [`KnotError::SumWithoutWord`] if a factor has no braid word, and those of [`closed_braid`] for a word of too many strands.
+    pub(super) fn sum(
+        name: &KnotName,
+        factors: &[Cow<'_, KnotEntry>],
+        is_amphichiral: &dyn Fn(&str) -> bool,
+    ) -> Result<Self, KnotError> {
+        let mut braid: Vec<i32> = Vec::new();
+        let mut invariants = Invariants::unknot();
+        let mut jones = Some(Jones::one());
+        for factor in factors {
+            if factor.braid.is_empty() {
+                return Err(KnotError::SumWithoutWord {
+                    name: name.to_string(),
+                    factor: factor.name.clone(),
+                });
+            }
+            let shift = braid.iter().map(|g| g.abs()).max().unwrap_or(0);
+            braid.extend(factor.braid.iter().map(|g| g + shift * g.signum()));
+            invariants = invariants.sum(&factor.invariants);
+            jones = jones.zip(factor.jones.as_ref()).and_then(|(a, b)| a.product(b));
+        }
+        check_word(&braid)?;
+        let chirality = if name.mirror_with(is_amphichiral) == *name {
+            Chirality::Amphichiral
+        } else {
+            Chirality::Chiral
+        };
+        Ok(Self {
+            name: name.to_string(),
+            aliases: Vec::new(),
+            jones,
+            braid,
+            other_braids: Vec::new(),
+            crossing_number: factors.iter().map(|factor| factor.crossing_number).sum(),
+            chirality,
+            invariants,
+            length_over_radius: None,
+            source: None,
+            start: None,
+        })
+    }
+
     /// Whether the knot is a sum of others, such as `3_1#4_1`.
     pub fn is_composite(&self) -> bool {
         self.name.contains('#')
@@ -337,12 +383,12 @@ impl KnotEntry {
         self.crossing_number == 0
     }
 
-    /// Whether the name is that of a mirror image: it begins with `m`.
+    /// Whether it is the mirror image of the shape that comes first: the name begins with `m`, or a sum stands after its mirror image.
     pub fn is_mirror_image(&self) -> bool {
-        self.name.starts_with('m')
+        is_mirror_image(&self.name)
     }
 
-    /// The entry of the mirror image: negated word and signature, a leading `m` added to or removed from each alias and factor's name.
+    /// The entry of the mirror image: negated word and signature, names as those of [`mirror_name`](crate::mirror_name).
     pub fn mirror(&self) -> Self {
         Self {
             name: mirror_name(&self.name),
@@ -350,7 +396,7 @@ impl KnotEntry {
             other_braids: self.other_braids.iter().map(|word| negated(word)).collect(),
             invariants: self.invariants.mirror(),
             jones: self.jones.as_ref().map(Jones::mirror),
-            aliases: self.aliases.iter().map(|name| toggled(name)).collect(),
+            aliases: self.aliases.iter().map(|name| mirror_name(name)).collect(),
             start: self.start.as_ref().map(StartCurve::mirror),
             ..self.clone()
         }
@@ -395,18 +441,6 @@ impl KnotEntry {
             ));
         }
         Ok(found)
-    }
-}
-
-/// Name of the mirror image: each factor gains or loses its leading `m`, as `m3_1` for `3_1` and `3_1#m3_1` for `m3_1#3_1`.
-pub fn mirror_name(name: &str) -> String {
-    name.split('#').map(toggled).collect::<Vec<_>>().join("#")
-}
-
-fn toggled(factor: &str) -> String {
-    match factor.strip_prefix('m') {
-        Some(rest) => rest.to_owned(),
-        None => format!("m{factor}"),
     }
 }
 

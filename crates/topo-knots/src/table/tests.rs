@@ -31,7 +31,7 @@ fn builtin_table_is_complete() {
     }
     assert_eq!(table.primes_up_to(7).count(), 14);
     assert!(table.primes_up_to(99).all(|knot| knot.name != "0_1"));
-    assert_eq!(table.complete_up_to(), 8);
+    assert_eq!(table.complete_up_to(), 10);
     assert_eq!(KnotTable::default().complete_up_to(), 2);
 }
 
@@ -43,7 +43,9 @@ fn aliases_and_mirrors_are_found() {
         ("square", "3_1#m3_1"),
         ("T(3,4)", "8_19"),
         ("T(3,5)", "10_124"),
-        ("m3_1#m4_1", "m3_1#m4_1"),
+        ("m3_1#m4_1", "m3_1#4_1"),
+        ("4_1#m3_1", "m3_1#4_1"),
+        ("trefoil#mgranny", "3_1#m3_1#m3_1"),
         ("mgranny", "m3_1#m3_1"),
     ] {
         assert_eq!(table.get(alias).expect(alias).name, name);
@@ -86,6 +88,8 @@ fn labels_of_mirror_images() {
         ("4_1#4_1", "4_1#4_1"),
         ("3_1#3_1", "m3_1#m3_1"),
         ("6_1|m6_1", "6_1|m6_1"),
+        ("3_1#4_1", "m3_1#4_1"),
+        ("m3_1#5_2", "3_1#m5_2"),
         ("8_21|5_1", "m8_21|m5_1"),
         ("unknown(1 -1 1)", "unknown(1 -1 1)"),
         ("", ""),
@@ -139,6 +143,47 @@ fn unknown_names_bring_near_ones() {
     assert!(error.to_string().contains("did you mean"));
 }
 
+/// What has no file: primes from the published table, sums from their factors; what cannot be made is refused with the reason.
+#[test]
+fn any_sum_and_any_prime_to_ten_crossings_is_found() {
+    let table = KnotTable::builtin();
+    for (name, canonical, word) in [
+        ("m3_1#m3_1", "m3_1#m3_1", vec![-1, -1, -1, -2, -2, -2]),
+        ("5_1#m3_1", "m3_1#5_1", vec![-1, -1, -1, 2, 2, 2, 2, 2]),
+        ("m3_1#0_1", "m3_1", vec![-1, -1, -1]),
+    ] {
+        let entry = table.get(name).expect(name);
+        assert_eq!((entry.name.as_str(), &entry.braid), (canonical, &word));
+        entry
+            .verify(&entry.start_curve().expect("a curve"))
+            .expect("its own invariants");
+    }
+    let square = table.get("m5_1#5_1").expect("known");
+    assert_eq!(square.chirality, Chirality::Amphichiral);
+    let (nine, mirror) = (table.get("9_12"), table.get("m9_12"));
+    let (nine, mirror) = (nine.expect("known"), mirror.expect("known"));
+    assert_eq!((nine.crossing_number, nine.mirror()), (9, mirror.into_owned()));
+    assert_eq!(table.get("10_123").expect("known").chirality, Chirality::Amphichiral);
+    assert!(KnotTable::default().get("9_12").is_err());
+    for name in ["10_166", "3_1#x", "m", "#", "3_1#", ""] {
+        assert!(matches!(
+            table.get(name),
+            Err(KnotError::UnknownKnot { .. })
+        ), "{name}");
+    }
+    let long = vec!["3_1"; 70].join("#");
+    assert!(matches!(
+        table.get(&long),
+        Err(KnotError::GeneratorTooLarge { .. })
+    ));
+    let mut table = table;
+    let mut curve = table.get("3_1").expect("known").into_owned();
+    (curve.name, curve.braid) = ("curve".to_owned(), Vec::new());
+    table.insert(curve);
+    let error = table.get("4_1#curve").expect_err("no word").to_string();
+    assert!(error.contains("`curve` has no braid word"), "{error}");
+}
+
 fn parse(text: &str) -> Result<KnotEntry, KnotError> {
     KnotEntry::parse(Path::new("x_1.toml"), text, &|_| {
         Ok("x,y,z\n0,0,0\n1,0,0\n0,1,oops\n".into())
@@ -152,6 +197,8 @@ fn files_with_faults_are_named() {
     assert!(parse(good).is_ok());
     for (from, to, key) in [
         ("\"x_1\"", "\"y_1\"", "name"),
+        ("\"x_1\"", "\"mx_1\"", "leading `m`"),
+        ("\"x_1\"", "\"x_1#3_1\"", "`3_1#x_1` would do"),
         ("determinant = 3", "determinant = 5", "determinant"),
         ("[1, -1, 1]", "[1, -1, 2]", "alexander"),
         (

@@ -65,7 +65,7 @@ mod tests {
             n_kicks: 0,
             ..TightenSettings::draft()
         };
-        let tight = tighten_entry(table.get("3_1").expect("known"), &settings).expect("tight");
+        let tight = tighten_entry(&table.get("3_1").expect("known"), &settings).expect("tight");
         let found = struts(&tight.curve, 5e-3, 2);
         // Nearly every place of a tight trefoil touches, and a row has one strut in three edges.
         let n = tight.curve.n_edges();

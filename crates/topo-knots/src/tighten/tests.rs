@@ -58,7 +58,7 @@ fn four_sevenths(knot: &KnotEntry) -> Option<f64> {
 #[test]
 fn the_rule_of_four_sevenths_applies_to_alternating_primes() {
     let table = KnotTable::builtin();
-    let rule = |name: &str| four_sevenths(table.get(name).expect("known"));
+    let rule = |name: &str| four_sevenths(&table.get(name).expect("known"));
     for (name, sevenths) in [("3_1", 24.0), ("4_1", 0.0), ("5_1", 44.0), ("5_2", 32.0)] {
         assert_eq!(rule(name), Some(sevenths / 7.0), "{name}");
         assert_eq!(rule(&format!("m{name}")), Some(-sevenths / 7.0), "m{name}");
@@ -173,7 +173,7 @@ fn long_seven_crossings_are_tight_at_sixteen_vertices_a_unit() {
 #[test]
 fn the_same_seed_gives_the_same_curve() {
     let table = KnotTable::builtin();
-    let knot = table.get("4_1").expect("known");
+    let knot = &*table.get("4_1").expect("known");
     let quick = TightenSettings {
         n_variants: 0,
         n_kicks: 2,
@@ -190,7 +190,7 @@ fn the_same_seed_gives_the_same_curve() {
 fn hops_lead_to_published_lengths() {
     let table = KnotTable::builtin();
     for (name, n_hops) in [("3_1", 2), ("5_2", 6)] {
-        let knot = table.get(name).expect("known");
+        let knot = &*table.get(name).expect("known");
         let by_hops =
             |knot| tighten_by_hops(knot, n_hops, &TightenSettings::draft()).expect("tight");
         let tight = by_hops(knot);
@@ -214,9 +214,9 @@ fn mirror_images_are_tightened_as_the_knot_itself() {
         n_kicks: 1,
         ..TightenSettings::draft()
     };
-    let knot = table.get("3_1").expect("known");
+    let knot = &*table.get("3_1").expect("known");
     let tight = tighten_entry(knot, &quick).expect("tight");
-    let mirror = tighten_entry(table.get("m3_1").expect("known"), &quick).expect("tight");
+    let mirror = tighten_entry(&table.get("m3_1").expect("known"), &quick).expect("tight");
     assert_eq!(mirror.name, "m3_1");
     assert_eq!(mirror.length_over_radius, tight.length_over_radius);
     let flipped = |x: &V| V::new(x.x, x.y, -x.z);
@@ -238,7 +238,7 @@ fn mirror_images_are_tightened_as_the_knot_itself() {
 #[test]
 fn the_tight_unknot_is_the_circle() {
     let table = KnotTable::builtin();
-    let knot = table.get("unknot").expect("known");
+    let knot = &*table.get("unknot").expect("known");
     let tight = tighten_entry(knot, &TightenSettings::draft()).expect("tight");
     let ropelength = tight.length_over_radius;
     assert!(
@@ -266,7 +266,7 @@ fn the_tight_unknot_is_the_circle() {
 #[test]
 fn centrelines_are_as_tight_and_of_the_same_type() {
     let table = KnotTable::builtin();
-    let knot = table.get("3_1").expect("known");
+    let knot = &*table.get("3_1").expect("known");
     let quick = TightenSettings {
         n_variants: 0,
         n_kicks: 0,
@@ -378,7 +378,7 @@ fn long_hops_find_the_starts_of_the_table() {
         ("8_10", 1, 87),
         ("8_14", 2, 68),
     ] {
-        let knot = table.get(name).expect("known");
+        let knot = &*table.get(name).expect("known");
         let settings = TightenSettings {
             seed,
             ..TightenSettings::standard()

@@ -34,7 +34,7 @@ pub(super) fn report(args: &IdentifyArgs, table: &KnotTable) -> Result<String, X
             let _ = writeln!(text, "{}", kind.describe());
             let sureness = if kind.is_certain() {
                 "certain: every knot of so few crossings was compared".to_owned()
-            } else if kind.names.len() == 1 {
+            } else if kind.types().len() == 1 {
                 format!(
                     "consistent: nothing contradicts it, but the table is complete only to {} crossings",
                     table.complete_up_to()

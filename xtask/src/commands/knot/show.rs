@@ -85,7 +85,7 @@ mod tests {
         assert_eq!(text.lines().count(), table.len() + 1);
         let granny = text.lines().find(|l| l.starts_with("3_1#3_1")).unwrap();
         assert!(granny.contains("missing"), "{granny}");
-        let shown = entry(table.get("T(3,4)").unwrap());
+        let shown = entry(&table.get("T(3,4)").unwrap());
         assert!(shown.contains("60.9858 (ashton2011)") && shown.contains("t^3 + t^5 - t^8"));
     }
 }

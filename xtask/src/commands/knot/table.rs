@@ -78,7 +78,7 @@ mod tests {
             n_kicks_a_start: 0,
             ..TightenSettings::draft()
         };
-        let knot = table.get("3_1").unwrap();
+        let knot = &*table.get("3_1").unwrap();
         let tight = tighten_entry(knot, &settings).unwrap();
         let mut unpublished = knot.clone();
         unpublished.length_over_radius = None;

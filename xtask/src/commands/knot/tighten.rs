@@ -65,7 +65,7 @@ fn entries(args: &TightenArgs, table: &KnotTable) -> Result<Vec<KnotEntry>, Xtas
     if args.names == ["all"] {
         return Ok(table.iter().cloned().collect());
     }
-    let entry = |name: &String| Ok(table.get(name)?.clone());
+    let entry = |name: &String| Ok(table.get(name)?.into_owned());
     args.names.iter().map(entry).collect()
 }
 

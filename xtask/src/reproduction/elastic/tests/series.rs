@@ -81,11 +81,11 @@ fn all_but_two_knots_are_one_crossing_change_from_a_simpler_one() {
             word[k] = -word[k];
             let kind = identify(closed_braid(&word).unwrap().vertices(), &table).unwrap();
             !kind.is_unknot()
-                && kind.names.iter().all(|name| {
-                    let found = table.get(name);
+                && kind.types().iter().all(|name| {
+                    let found = table.get(&name.to_string());
                     found.is_ok_and(|other| other.crossing_number < entry.crossing_number)
                 })
-                && !kind.names.is_empty()
+                && !kind.types().is_empty()
         });
         assert_eq!(simpler, !WITHOUT_INTERMEDIATE.contains(&knot), "{knot}");
     }
