@@ -31,8 +31,8 @@ pub use invariant::{
     Invariants, Jones, alexander_polynomial, determinant, jones_polynomial, signature,
 };
 pub use moebius::relax_moebius;
-pub use start_file::StartCurve;
 pub use name::{Factor, KnotName, mirror_name};
+pub use start_file::StartCurve;
 pub use table::{Chirality, KnotEntry, KnotTable};
 pub use tighten::{
     Certificate, SecondOpinion, TightKnot, TightenSettings, second_opinion, struts, tighten,

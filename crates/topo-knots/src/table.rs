@@ -5,9 +5,9 @@ use std::collections::{BTreeMap, HashSet};
 use std::path::Path;
 use std::sync::{LazyLock, OnceLock};
 
+use crate::KnotError;
 use crate::identify::UNKNOWN;
 use crate::name::{self, Factor, KnotName};
-use crate::KnotError;
 use include_dir::{Dir, include_dir};
 
 mod census;

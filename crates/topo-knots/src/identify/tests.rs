@@ -76,10 +76,7 @@ fn what_fits_several_knots_is_called_ambiguous() {
         .clone();
     let kind = identify(&braid(&word), &table).expect("a knot");
     assert_eq!(kind.label(), "8_21|3_1#4_1");
-    assert_eq!(
-        kind.describe(),
-        "consistent with each of 8_21, 3_1#4_1"
-    );
+    assert_eq!(kind.describe(), "consistent with each of 8_21, 3_1#4_1");
     assert!(!kind.is_certain());
 }
 

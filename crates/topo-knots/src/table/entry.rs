@@ -10,8 +10,7 @@ use crate::braid::check_word;
 use crate::name::{KnotName, is_mirror_image, mirror_name};
 use crate::start_file::StartCurve;
 use crate::{
-    Invariants, Jones, KnotError, KnotTable, KnotType, V, closed_braid, identify,
-    jones_polynomial,
+    Invariants, Jones, KnotError, KnotTable, KnotType, V, closed_braid, identify, jones_polynomial,
 };
 
 /// Most vertices of a start curve: many more than any level of the tightening has.
@@ -350,7 +349,9 @@ impl KnotEntry {
             let shift = braid.iter().map(|g| g.abs()).max().unwrap_or(0);
             braid.extend(factor.braid.iter().map(|g| g + shift * g.signum()));
             invariants = invariants.sum(&factor.invariants);
-            jones = jones.zip(factor.jones.as_ref()).and_then(|(a, b)| a.product(b));
+            jones = jones
+                .zip(factor.jones.as_ref())
+                .and_then(|(a, b)| a.product(b));
         }
         check_word(&braid)?;
         let chirality = if name.mirror_with(is_amphichiral) == *name {

@@ -162,14 +162,20 @@ fn any_sum_and_any_prime_to_ten_crossings_is_found() {
     assert_eq!(square.chirality, Chirality::Amphichiral);
     let (nine, mirror) = (table.get("9_12"), table.get("m9_12"));
     let (nine, mirror) = (nine.expect("known"), mirror.expect("known"));
-    assert_eq!((nine.crossing_number, nine.mirror()), (9, mirror.into_owned()));
-    assert_eq!(table.get("10_123").expect("known").chirality, Chirality::Amphichiral);
+    assert_eq!(
+        (nine.crossing_number, nine.mirror()),
+        (9, mirror.into_owned())
+    );
+    assert_eq!(
+        table.get("10_123").expect("known").chirality,
+        Chirality::Amphichiral
+    );
     assert!(KnotTable::default().get("9_12").is_err());
     for name in ["10_166", "3_1#x", "m", "#", "3_1#", ""] {
-        assert!(matches!(
-            table.get(name),
-            Err(KnotError::UnknownKnot { .. })
-        ), "{name}");
+        assert!(
+            matches!(table.get(name), Err(KnotError::UnknownKnot { .. })),
+            "{name}"
+        );
     }
     let long = vec!["3_1"; 70].join("#");
     assert!(matches!(
