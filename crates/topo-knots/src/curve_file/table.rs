@@ -79,6 +79,10 @@ impl<'a> Rows<'a> {
                 continue;
             }
             split(line.text, &mut buffer);
+            if buffer.iter().all(|cell| is_missing(cell)) {
+                start = true;
+                continue;
+            }
             rows.lines.push(*line);
             rows.cells.push(buffer.clone());
             rows.starts.push(start);
