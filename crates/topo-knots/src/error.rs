@@ -135,6 +135,14 @@ pub enum KnotError {
         /// Index of the vertex.
         vertex: usize,
     },
+    /// A coordinate has digits too far below the size of the curve for exact arithmetic.
+    #[error(
+        "vertex {vertex} has a coordinate more than 2^340 times smaller, in its last digit, than the curve is large; round it, to 0 say"
+    )]
+    Spread {
+        /// Index of the vertex.
+        vertex: usize,
+    },
     /// No projection of the curve was in general position.
     #[error(
         "no projection of the curve is in general position; does the curve touch or overlap itself?"

@@ -7,7 +7,8 @@ mod reduce;
 
 use serde::{Deserialize, Serialize};
 
-use crate::invariant::{Diagram, least_crossing, usable_vertices};
+use crate::exact::segments_meet;
+use crate::invariant::{kauffman, kauffman_of_name, Diagram, least_crossing, usable_vertices};
 use crate::name::{self, KnotName, UNKNOT};
 use crate::{Invariants, Jones, KnotError, KnotTable, V};
 use known::{Candidate, Found, candidates};
@@ -17,8 +18,10 @@ pub use open::{OpenKnotType, identify_open};
 
 /// Directions tried for a projection with few crossings; a reduced polygon has few anyway.
 const N_PROJECTIONS: usize = 8;
-/// Further directions for the rare curve of which all of those are degenerate.
-const N_MORE_PROJECTIONS: usize = 64;
+/// Further directions where those leave more crossings than a certain name may have.
+const N_MORE_PROJECTIONS: usize = 24;
+/// Pass moves tried at random there.
+const N_SHUFFLES: usize = 200;
 /// Fewest crossings of a knot other than the unknot whose Alexander polynomial is 1.
 const LEAST_TRIVIAL_ALEXANDER: usize = 11;
 
@@ -232,7 +235,7 @@ enum Care {
 
 /// The type of the closed chain in `reducer`, which is reduced on the way.
 fn classify(reducer: &mut Reducer, table: &KnotTable, care: Care) -> Result<KnotType, KnotError> {
-    let diagram = match diagram(reducer)? {
+    let diagram = match diagram(reducer, table.complete_up_to() as usize)? {
         Some(diagram) => diagram,
         None => return Ok(KnotType::unknot(0)),
     };
@@ -255,6 +258,11 @@ fn classify(reducer: &mut Reducer, table: &KnotTable, care: Care) -> Result<Knot
         jones = Invariants::jones_of(&diagram);
         if jones.is_some() {
             list = look_up(jones.as_ref());
+        }
+        if list.len() > 1
+            && let Some(found) = kauffman(&diagram)
+        {
+            list.retain(|c| kauffman_of_name(&c.name).is_none_or(|own| own == found));
         }
     }
     if invariants.alexander == [1] && jones.as_ref().is_none_or(|jones| *jones == Jones::one()) {
@@ -283,17 +291,32 @@ fn handedness(list: &[Candidate]) -> Handedness {
     }
 }
 
-/// A small diagram of the closed chain in `reducer`; none if it is seen to be the unknot.
-fn diagram(reducer: &mut Reducer) -> Result<Option<Diagram>, KnotError> {
+/// A small diagram of the closed chain in `reducer`, with more effort if it has more than `enough` crossings; none if it is seen to
+/// be the unknot.
+fn diagram(reducer: &mut Reducer, enough: usize) -> Result<Option<Diagram>, KnotError> {
     reducer.reduce(true, &[]);
     if reducer.x.len() < 6 {
-        return Ok(None);
+        return match touches_itself(&reducer.x) {
+            true => Err(KnotError::Degenerate),
+            false => Ok(None),
+        };
     }
-    let mut diagram = least_crossing(&reducer.x, N_PROJECTIONS, 0)
-        .or_else(|| least_crossing(&reducer.x, N_MORE_PROJECTIONS, 1))
-        .ok_or(KnotError::Degenerate)?;
-    diagram.simplify();
+    let mut diagram = least_crossing(&reducer.x, N_PROJECTIONS, 0)?;
+    if diagram.n_crossings() > enough {
+        let more = least_crossing(&reducer.x, N_MORE_PROJECTIONS, 1)?;
+        if more.n_crossings() < diagram.n_crossings() {
+            diagram = more;
+        }
+        diagram.shuffle(enough, N_SHUFFLES);
+    }
     Ok((diagram.n_crossings() >= 3).then_some(diagram))
+}
+
+/// Whether two edges of a closed polygon of few vertices meet that are no neighbours.
+fn touches_itself(x: &[V]) -> bool {
+    let n = x.len();
+    let meet = |i: usize, j: usize| segments_meet(&x[i], &x[i + 1], &x[j], &x[(j + 1) % n]);
+    (0..n).any(|i| (i + 2..n).any(|j| (i > 0 || j + 1 < n) && meet(i, j)))
 }
 
 #[cfg(test)]

@@ -2,15 +2,21 @@
 
 mod alexander;
 mod diagram;
+mod field;
 mod goeritz;
 mod jones;
+mod kauffman;
+mod passes;
 mod projection;
 
 use crate::identify::shortened;
 use crate::{KnotError, V};
 
 pub(crate) use diagram::Diagram;
+pub(crate) use kauffman::{kauffman, kauffman_of_name};
 pub use jones::Jones;
+#[cfg(test)]
+pub(crate) use projection::one_view;
 pub(crate) use projection::{fibonacci_directions, least_crossing, usable_vertices};
 
 /// Directions tried for the projection with the fewest crossings.
@@ -148,9 +154,7 @@ fn diagram(vertices: &[V]) -> Result<Diagram, KnotError> {
     if vertices.len() > LONGEST_PROJECTED {
         vertices = shortened(&vertices).into();
     }
-    let mut diagram = least_crossing(&vertices, N_PROJECTIONS, 0).ok_or(KnotError::Degenerate)?;
-    diagram.simplify();
-    Ok(diagram)
+    least_crossing(&vertices, N_PROJECTIONS, 0)
 }
 
 /// Jones polynomial of the closed polygon through `vertices`; `None` if its diagram has more than 60 crossings or is too

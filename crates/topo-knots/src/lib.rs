@@ -9,6 +9,7 @@
 mod braid;
 mod curve_file;
 mod error;
+mod exact;
 mod ideal;
 mod identify;
 mod invariant;

@@ -14,7 +14,7 @@ pub(crate) struct Aabb {
 
 impl Aabb {
     /// Box around points, grown by `pad`.
-    pub fn around(points: &[&V], pad: f32) -> Self {
+    pub fn around(points: &[&V], pad: [f32; 3]) -> Self {
         let mut low = [f32::INFINITY; 3];
         let mut high = [f32::NEG_INFINITY; 3];
         for x in points {
@@ -24,8 +24,8 @@ impl Aabb {
             }
         }
         for k in 0..3 {
-            low[k] -= pad;
-            high[k] += pad;
+            low[k] -= pad[k];
+            high[k] += pad[k];
         }
         Self { low, high }
     }
@@ -185,7 +185,7 @@ mod tests {
             V::new((1.7 * s).sin(), (2.3 * s).cos(), (0.9 * s).sin())
         };
         let boxes: Vec<Aabb> = (0..n)
-            .map(|k| Aabb::around(&[&point(k), &point(k + 1)], 0.0))
+            .map(|k| Aabb::around(&[&point(k), &point(k + 1)], [0.0; 3]))
             .collect();
         let mut all = EdgeBoxes::default();
         all.reset(boxes.len());

@@ -2,6 +2,7 @@
 
 use super::boxes::{Aabb, EdgeBoxes};
 use crate::V;
+use crate::exact::{is_between, is_in_angle, is_pierced, volume};
 
 /// Rays from the ends of an open chain that no triangle may meet; none for a closed one.
 #[derive(Debug, Clone, Copy)]
@@ -25,9 +26,6 @@ impl Ray {
     }
 }
 
-/// Distance, in units of the largest coordinate, below which an edge counts as touching a triangle: well above rounding, so that
-/// no strand is ever left so close to another that projections disagree on which one is above.
-const TOUCH: f64 = 1e-11;
 /// Fewest vertices of a knotted polygon.
 const LEAST_CLOSED: usize = 6;
 /// Marks a vertex that is gone.
@@ -43,8 +41,6 @@ pub(crate) struct Reducer {
     pub x: Vec<V>,
     boxes: EdgeBoxes,
     next: Vec<u32>,
-    /// Distance below which an edge counts as touching a triangle.
-    touch: f64,
     /// Triangles tested, for the tests of cost.
     pub n_triangles: usize,
 }
@@ -68,9 +64,10 @@ impl Reducer {
     /// The two ends of an open chain stay. Every triangle is kept clear of `rays` too, so that the chain keeps its type
     /// under the closure along any of them.
     pub fn reduce(&mut self, closed: bool, rays: &[Ray]) {
-        let size = self.x.iter().map(|x| x.amax()).fold(0.0, f64::max);
-        let pad = (1e-6 * size) as f32;
-        self.touch = TOUCH * size;
+        // Single precision rounds by 6e-8; a curve may be much longer along one axis than along another.
+        let sizes = |s: V, x: &V| s.sup(&x.abs());
+        let size = self.x.iter().fold(V::zeros(), sizes);
+        let pad = [0, 1, 2].map(|k| (1e-6 * size[k]) as f32);
         let least = if closed { LEAST_CLOSED } else { 3 };
         let mut n_idle = 0;
         while self.x.len() >= least && n_idle < 2 {
@@ -89,7 +86,7 @@ impl Reducer {
     }
 
     /// One pass along the chain; false if no vertex could go.
-    fn pass(&mut self, closed: bool, rays: &[Ray], pad: f32) -> bool {
+    fn pass(&mut self, closed: bool, rays: &[Ray], pad: [f32; 3]) -> bool {
         let n = self.x.len();
         let n_edges = if closed { n } else { n - 1 };
         self.boxes.reset(n_edges);
@@ -109,7 +106,7 @@ impl Reducer {
                 break;
             }
             let c = self.next[b] as usize;
-            let free = self.is_free([a, b, c], before, pad, rays);
+            let free = self.is_free([a, b, c], before, n_edges, pad, rays);
             before = a;
             a = b;
             if free {
@@ -141,75 +138,62 @@ impl Reducer {
     }
 
     /// Whether no other edge and no ray pierces the triangle of successive vertices.
-    fn is_free(&mut self, [a, b, c]: [usize; 3], before: usize, pad: f32, rays: &[Ray]) -> bool {
+    fn is_free(
+        &mut self,
+        [a, b, c]: [usize; 3],
+        before: usize,
+        n_edges: usize,
+        pad: [f32; 3],
+        rays: &[Ray],
+    ) -> bool {
         self.n_triangles += 1;
         let (x, next) = (&self.x, &self.next);
-        let triangle = Triangle {
-            a: x[a],
-            b: x[b],
-            c: x[c],
-            touch: self.touch,
+        let corners = [&x[a], &x[b], &x[c]];
+        if is_between(corners[0], corners[1], corners[2]) {
+            // Without the vertex, the chain runs through the same points.
+            return true;
+        }
+        // Neighbours share a corner; within the plane of the triangle they may run into it from there.
+        let runs_in = |from: usize, to: usize, other: usize| {
+            volume(corners[0], corners[1], corners[2], &x[to]) == 0.0
+                && is_in_angle(&x[from], &x[b], &x[other], &x[to])
         };
-        let bounds = Aabb::around(&[&triangle.a, &triangle.b, &triangle.c], pad);
+        let after = if n_edges > c { Some(next[c] as usize) } else { None };
+        if before != usize::MAX && runs_in(a, before, c) || after.is_some_and(|d| runs_in(c, d, a))
+        {
+            return false;
+        }
+        let bounds = Aabb::around(&corners, pad);
         let hit = self.boxes.any(&bounds, |edge| {
-            // Edges that share a corner can only touch it there.
             edge != a
                 && edge != b
                 && edge != c
                 && edge != before
-                && triangle.is_pierced(&x[edge], &x[next[edge] as usize])
+                && is_pierced(corners, &x[edge], &x[next[edge] as usize])
         });
         if hit {
             return false;
         }
-        let centre = (triangle.a + triangle.b + triangle.c) / 3.0;
-        let reach = (triangle.a - centre)
+        if rays.is_empty() {
+            return true;
+        }
+        let [a, b, c] = corners;
+        let centre = (a + b + c) / 3.0;
+        let reach = (a - centre)
             .norm_squared()
-            .max((triangle.b - centre).norm_squared())
-            .max((triangle.c - centre).norm_squared());
+            .max((b - centre).norm_squared())
+            .max((c - centre).norm_squared());
         !rays.iter().any(|ray| {
             let to = centre - ray.from;
             let along = to.dot(&ray.direction);
             let ahead = along.max(0.0);
-            to.norm_squared() - ahead * (2.0 * along - ahead) <= reach * (1.0 + 1e-9)
-                && ray.from != triangle.a
-                && ray.from != triangle.c
-                && triangle.is_pierced(&ray.from, &ray.to)
+            // A first comparison; the second margin is for the rounding of a difference of large numbers.
+            to.norm_squared() - ahead * (2.0 * along - ahead)
+                <= reach * (1.0 + 1e-9) + 1e-13 * to.norm_squared()
+                && ray.from != *a
+                && ray.from != *c
+                && is_pierced(corners, &ray.from, &ray.to)
         })
-    }
-}
-
-struct Triangle {
-    a: V,
-    b: V,
-    c: V,
-    /// How near counts as touching.
-    touch: f64,
-}
-
-impl Triangle {
-    /// Whether the segment p-q meets the triangle; touching counts.
-    fn is_pierced(&self, p: &V, q: &V) -> bool {
-        let (a, b, c) = (self.a - p, self.b - p, self.c - p);
-        let d = q - p;
-        let ab = d.dot(&a.cross(&b));
-        let bc = d.dot(&b.cross(&c));
-        // Volumes of what is as thin as a touch.
-        let reach = a.amax().max(b.amax()).max(c.amax());
-        let thin = self.touch * d.amax() * reach;
-        if ab > thin && bc < -thin || ab < -thin && bc > thin {
-            return false;
-        }
-        let ca = d.dot(&c.cross(&a));
-        let positive = ab > thin || bc > thin || ca > thin;
-        let negative = ab < -thin || bc < -thin || ca < -thin;
-        if positive && negative {
-            return false;
-        }
-        let normal = (self.b - self.a).cross(&(self.c - self.a));
-        let (from, to) = (-a.dot(&normal), (q - self.a).dot(&normal));
-        let near = self.touch * normal.amax();
-        !(from > near && to > near || from < -near && to < -near)
     }
 }
 

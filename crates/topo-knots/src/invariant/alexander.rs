@@ -1,35 +1,7 @@
 //! The Alexander polynomial, exactly: minors of the Fox matrix at integers modulo a prime, interpolated.
 
 use super::diagram::Diagram;
-
-/// Mersenne's prime 2^61 - 1: every coefficient of a diagram met here is far below half of it.
-const P: u64 = (1 << 61) - 1;
-
-fn add(a: u64, b: u64) -> u64 {
-    let s = a + b;
-    if s >= P { s - P } else { s }
-}
-
-fn sub(a: u64, b: u64) -> u64 {
-    if a >= b { a - b } else { a + P - b }
-}
-
-fn mul(a: u64, b: u64) -> u64 {
-    let wide = u128::from(a) * u128::from(b);
-    add((wide as u64) & P, (wide >> 61) as u64)
-}
-
-fn inverse(a: u64) -> u64 {
-    let (mut power, mut result, mut exponent) = (a, 1, P - 2);
-    while exponent > 0 {
-        if exponent & 1 == 1 {
-            result = mul(result, power);
-        }
-        power = mul(power, power);
-        exponent >>= 1;
-    }
-    result
-}
+use super::field::{P, add, inverse, mul, sub};
 
 /// Alexander polynomial of a diagram: symmetric coefficients, the first positive; none if they are not those of a knot.
 ///
@@ -199,14 +171,6 @@ fn normalise(coefficients: &[u64]) -> Option<Vec<i64>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn field_arithmetic_inverts() {
-        for a in [1, 2, 12_345, P - 1, P / 3] {
-            assert_eq!(mul(a, inverse(a)), 1);
-        }
-        assert_eq!(sub(add(P - 1, 5), 5), P - 1);
-    }
 
     #[test]
     fn interpolation_recovers_a_polynomial() {

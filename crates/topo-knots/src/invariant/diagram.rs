@@ -28,7 +28,7 @@ impl Diagram {
     ///
     /// Two crossings that follow each other on both of their strands bound a bigon in any planar diagram of one
     /// component, so the code alone tells where the second move applies.
-    pub fn simplify(&mut self) {
+    pub fn cancel(&mut self) {
         let mut alive = vec![true; self.signs.len()];
         let mut place = vec![[0usize; 2]; self.signs.len()];
         let mut any = false;
@@ -69,6 +69,28 @@ impl Diagram {
         if any {
             self.renumber(&alive);
         }
+    }
+
+    /// Place of a half-edge, counterclockwise from the outgoing upper one.
+    pub fn slot(&self, visit: Visit, outgoing: bool) -> usize {
+        match (visit.over, outgoing) {
+            (true, true) => 0,
+            (true, false) => 2,
+            (false, _) if outgoing == (self.signs[visit.crossing as usize] > 0) => 1,
+            (false, _) => 3,
+        }
+    }
+
+    /// The other half of each half-edge; half-edge k of crossing c is number 4 c + k.
+    pub fn twins(&self) -> Vec<usize> {
+        let mut twin = vec![0; 4 * self.n_crossings()];
+        for (k, here) in self.visits.iter().enumerate() {
+            let there = self.visits[(k + 1) % self.visits.len()];
+            let out = 4 * here.crossing as usize + self.slot(*here, true);
+            let into = 4 * there.crossing as usize + self.slot(there, false);
+            (twin[out], twin[into]) = (into, out);
+        }
+        twin
     }
 
     fn renumber(&mut self, alive: &[bool]) {
@@ -113,20 +135,20 @@ mod tests {
             (2, false),
         ];
         let mut plain = code(&trefoil, &[1, 1, 1]);
-        plain.simplify();
+        plain.cancel();
         assert_eq!(plain.n_crossings(), 3);
         let mut visits = trefoil.to_vec();
         visits.insert(2, (3, true));
         visits.insert(3, (3, false));
         let mut curled = code(&visits, &[1, 1, 1, -1]);
-        curled.simplify();
+        curled.cancel();
         assert_eq!(curled.visits, plain.visits);
     }
 
     #[test]
     fn a_strand_laid_over_another_is_lifted_off() {
         let mut laid = code(&[(0, true), (1, true), (0, false), (1, false)], &[1, -1]);
-        laid.simplify();
+        laid.cancel();
         assert_eq!(laid.n_crossings(), 0);
     }
 }

@@ -70,19 +70,13 @@ impl Faces {
     fn trace(diagram: &Diagram) -> Self {
         let n = diagram.n_crossings();
         let n_visits = diagram.visits.len();
-        let mut twin = vec![0; 4 * n];
+        let twin = diagram.twins();
         let mut colour = vec![0; n];
-        for k in 0..n_visits {
-            let (here, there) = (diagram.visits[k], diagram.visits[(k + 1) % n_visits]);
+        for k in 0..n_visits.saturating_sub(1) {
+            let (here, there) = (diagram.visits[k], diagram.visits[k + 1]);
             let (a, b) = (here.crossing as usize, there.crossing as usize);
-            let out = slot(here.over, true, diagram.signs[a]);
-            let into = slot(there.over, false, diagram.signs[b]);
-            twin[4 * a + out] = 4 * b + into;
-            twin[4 * b + into] = 4 * a + out;
             // The face left of an edge is corner `out` of its start and corner `into - 1` of its end.
-            if k + 1 < n_visits {
-                colour[b] = (colour[a] + out + into + 1) % 2;
-            }
+            colour[b] = (colour[a] + diagram.slot(here, true) + diagram.slot(there, false) + 1) % 2;
         }
         let mut name = vec![usize::MAX; 4 * n];
         let mut n_white = [0, 0];
@@ -103,21 +97,6 @@ impl Faces {
             name,
             colour_of_corner_0: colour,
             n_white,
-        }
-    }
-}
-
-/// Place of a half-edge, counterclockwise from the outgoing upper one.
-fn slot(over: bool, outgoing: bool, sign: i8) -> usize {
-    match (over, outgoing) {
-        (true, true) => 0,
-        (true, false) => 2,
-        (false, outgoing) => {
-            if outgoing == (sign > 0) {
-                1
-            } else {
-                3
-            }
         }
     }
 }
@@ -190,14 +169,16 @@ fn swap(m: &mut [f64], n: usize, a: usize, b: usize) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::invariant::least_crossing;
     use crate::{KnotTable, closed_braid};
 
     #[test]
     fn both_colourings_agree() {
         for knot in KnotTable::builtin().iter() {
             let curve = closed_braid(&knot.braid).expect("a knot");
-            let diagram = least_crossing(curve.vertices(), 8, 5).expect("general");
+            let diagram = crate::invariant::one_view(curve.vertices(), 5);
+            if diagram.n_crossings() < 3 {
+                continue;
+            }
             let faces = Faces::trace(&diagram);
             let expected = Some((knot.invariants.determinant, knot.invariants.signature));
             for white in 0..2 {

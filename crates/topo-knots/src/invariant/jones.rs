@@ -294,15 +294,16 @@ impl Power {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::invariant::least_crossing;
+    use crate::invariant::{least_crossing, one_view};
     use crate::{KnotTable, closed_braid};
 
     fn of_word(word: &[i32], n_directions: usize, simplify: bool) -> (Option<Jones>, usize) {
         let curve = closed_braid(word).expect("a knot");
-        let mut diagram = least_crossing(curve.vertices(), n_directions, 3).expect("general");
-        if simplify {
-            diagram.simplify();
-        }
+        let diagram = if simplify {
+            least_crossing(curve.vertices(), n_directions, 3).expect("general")
+        } else {
+            one_view(curve.vertices(), 3)
+        };
         (jones(&diagram), diagram.n_crossings())
     }
 

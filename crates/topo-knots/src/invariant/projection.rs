@@ -1,9 +1,9 @@
-//! Knot diagrams by projecting a closed polygon along a direction.
+//! Knot diagrams: a closed polygon as it is seen from a point outside, every crossing decided without rounding.
 
 use std::borrow::Cow;
 
 use super::diagram::{Diagram, Visit};
-use crate::{KnotError, V};
+use crate::{KnotError, V, exact};
 
 /// Directions spread evenly over the sphere along Fibonacci's spiral, turned by `seed` about a skew axis.
 pub(crate) fn fibonacci_directions(n: usize, seed: u64) -> impl Iterator<Item = V> {
@@ -19,10 +19,16 @@ pub(crate) fn fibonacci_directions(n: usize, seed: u64) -> impl Iterator<Item = 
     })
 }
 
-/// Coordinates whose third powers, and fourth ones of their differences, are far from overflow and underflow.
+/// Sizes of an axis that need no scaling: third powers of coordinates and their last digits are far from overflow and underflow.
 const TAME: std::ops::Range<f64> = 1e-30..1e30;
+/// Binary place of the last digit of a coordinate up to which products of three are exact, of an axis of size 1.
+const LAST_PLACE: i32 = -340;
 
-/// Refuses curves with too few or non-finite vertices; curves of outlandish size are scaled by a power of two.
+/// Refuses curves with too few or non-finite vertices; curves of outlandish size are scaled by powers of two, closed ones each axis by
+/// itself: that keeps the type, and no digit is lost.
+///
+/// # Errors
+/// [`KnotError::TooFewVertices`], [`KnotError::NotFinite`], and [`KnotError::Spread`] for digits too small to reckon with exactly.
 pub(crate) fn usable_vertices(vertices: &[V], closed: bool) -> Result<Cow<'_, [V]>, KnotError> {
     let least = if closed { 3 } else { 2 };
     if vertices.len() < least {
@@ -30,81 +36,160 @@ pub(crate) fn usable_vertices(vertices: &[V], closed: bool) -> Result<Cow<'_, [V
             n_vertices: vertices.len(),
         });
     }
-    let mut size = 0.0_f64;
+    let mut size = V::zeros();
     for (vertex, x) in vertices.iter().enumerate() {
         if !x.iter().all(|c| c.is_finite()) {
             return Err(KnotError::NotFinite { vertex });
         }
-        size = size.max(x.amax());
+        size = size.zip_map(x, |s, c: f64| s.max(c.abs()));
     }
-    if size == 0.0 || TAME.contains(&size) {
+    if !closed {
+        size = V::repeat(size.amax());
+    }
+    let is_tame = |s: f64| s == 0.0 || TAME.contains(&s);
+    let place = size.map(|s| if is_tame(s) { 0 } else { -exponent(s) });
+    for (vertex, x) in vertices.iter().enumerate() {
+        // Far from the limit, nearly always, the size of a number tells that its digits are.
+        let is_fine = |k: usize| {
+            x[k] == 0.0
+                || x[k].abs() > 1e-80 && place[k] == 0
+                || last_place(x[k]) + place[k] >= LAST_PLACE
+        };
+        if !(0..3).all(is_fine) {
+            return Err(KnotError::Spread { vertex });
+        }
+    }
+    if place == nalgebra::Vector3::zeros() {
         return Ok(Cow::Borrowed(vertices));
     }
     // In two steps: 2^1074 itself is beyond the largest number.
-    let half = (-0.5 * size.log2()).round().exp2();
-    Ok(Cow::Owned(
-        vertices.iter().map(|x| x * half * half).collect(),
-    ))
+    let first = place.map(|p| f64::from(p / 2).exp2());
+    let second = place.map(|p| f64::from(p - p / 2).exp2());
+    let scaled = |x: &V| x.component_mul(&first).component_mul(&second);
+    Ok(Cow::Owned(vertices.iter().map(scaled).collect()))
 }
 
-/// The diagram with the fewest crossings among `n_directions` projections; none if all are degenerate.
-pub(crate) fn least_crossing(vertices: &[V], n_directions: usize, seed: u64) -> Option<Diagram> {
-    let mut projector = Projector::default();
-    let mut best = usize::MAX;
-    let mut diagram = None;
-    for direction in fibonacci_directions(n_directions, seed) {
-        if projector.find_crossings(vertices, direction, best) {
-            best = projector.crossings.len();
-            diagram = Some(direction);
-            if best < 3 {
-                break;
+/// The binary place of the first digit, about.
+fn exponent(x: f64) -> i32 {
+    x.abs().log2().floor() as i32
+}
+
+/// The binary place of the last digit that is not 0.
+fn last_place(x: f64) -> i32 {
+    let bits = x.to_bits();
+    let (power, digits) = ((bits >> 52 & 0x7ff) as i32, bits & ((1 << 52) - 1));
+    if power == 0 {
+        digits.trailing_zeros() as i32 - 1074
+    } else {
+        (digits | 1 << 52).trailing_zeros() as i32 + power - 1075
+    }
+}
+
+/// Further views for the rare curve of which all others are degenerate.
+const N_MORE_VIEWS: usize = 64;
+
+/// The diagram with the fewest crossings, once simplified, among `n_views` from all around.
+///
+/// # Errors
+/// [`KnotError::Degenerate`] if the curve touches itself, or no view is in general position.
+///
+/// # Validation
+/// `every_view_shows_the_same_knot`, `curves_that_touch_themselves_are_refused`.
+pub(crate) fn least_crossing(
+    vertices: &[V],
+    n_views: usize,
+    seed: u64,
+) -> Result<Diagram, KnotError> {
+    let mut viewer = Viewer::default();
+    match viewer.best_of(vertices, n_views, seed)? {
+        Some(diagram) => Ok(diagram),
+        None => viewer
+            .best_of(vertices, N_MORE_VIEWS, seed + 1)?
+            .ok_or(KnotError::Degenerate),
+    }
+}
+
+/// What a view shows.
+enum View {
+    Diagram(Diagram),
+    /// More crossings than wanted, or a vertex on an edge, or crossings of an edge too close to be told apart.
+    Unusable,
+    /// The curve runs through itself.
+    Touching,
+}
+
+/// One passage through a crossing: which edge, where along it, and how exactly that is known.
+#[derive(Debug, Clone, Copy)]
+struct Passage {
+    edge: u32,
+    low: f64,
+    high: f64,
+    visit: Visit,
+}
+
+/// Looks at curves; keeps its buffers between calls.
+#[derive(Debug, Default)]
+struct Viewer {
+    eye: V,
+    /// Vertices seen from the eye, the first repeated.
+    from_eye: Vec<V>,
+    /// Normal of the plane of the eye and each edge, and the sums of the sizes of its terms.
+    normals: Vec<(V, V)>,
+    /// The picture, for a first comparison alone.
+    picture: Vec<[f64; 2]>,
+    passages: Vec<Passage>,
+    signs: Vec<i8>,
+}
+
+/// Distance of the eye in units of the half extents: the curve lies in a box within 1.8.
+const EYE: f64 = 8.0;
+/// Extent along one axis, in units of the largest, below which it is always stretched: little could be told apart otherwise.
+const SLENDER: f64 = 1e-3;
+/// Margin of the picture in its units: far above its rounding.
+const MARGIN: f64 = 1e-11;
+/// Crossings of a view in units of those of the best so far, simplified, beyond which it is not simplified.
+const WORTH_A_TRY: usize = 4;
+
+impl Viewer {
+    fn best_of(
+        &mut self,
+        vertices: &[V],
+        n_views: usize,
+        seed: u64,
+    ) -> Result<Option<Diagram>, KnotError> {
+        let mut best: Option<Diagram> = None;
+        for (k, direction) in fibonacci_directions(n_views, seed).enumerate() {
+            let n_best = best.as_ref().map_or(usize::MAX, Diagram::n_crossings);
+            match self.look(vertices, direction, k % 2 == 1, n_best.saturating_mul(WORTH_A_TRY)) {
+                View::Touching => return Err(KnotError::Degenerate),
+                View::Unusable => {}
+                View::Diagram(mut diagram) => {
+                    diagram.simplify();
+                    if diagram.n_crossings() < 3 {
+                        return Ok(Some(diagram));
+                    }
+                    if diagram.n_crossings() < n_best {
+                        best = Some(diagram);
+                    }
+                }
             }
         }
+        Ok(best)
     }
-    let direction = diagram?;
-    projector
-        .find_crossings(vertices, direction, usize::MAX)
-        .then(|| projector.diagram())
-}
 
-/// One crossing of two edges: position of the upper and the lower visit along the curve, and the sign.
-#[derive(Debug, Clone, Copy)]
-struct Crossing {
-    over: f64,
-    under: f64,
-    sign: i8,
-}
-
-/// Projects curves; keeps its buffers between calls.
-#[derive(Debug, Default)]
-struct Projector {
-    points: Vec<[f64; 3]>,
-    crossings: Vec<Crossing>,
-}
-
-impl Projector {
-    /// Finds all crossings seen along `direction`; false when there are `limit` or more, or one is degenerate.
-    fn find_crossings(&mut self, vertices: &[V], direction: V, limit: usize) -> bool {
-        let w = direction.normalize();
-        let u = if w.x.abs() < 0.6 { V::x() } else { V::y() }
-            .cross(&w)
-            .normalize();
-        let v = w.cross(&u);
-        self.points.clear();
-        self.points
-            .extend(vertices.iter().map(|x| [x.dot(&u), x.dot(&v), x.dot(&w)]));
-        self.points.push(self.points[0]);
-        let size = vertices.iter().map(|x| x.amax()).fold(0.0, f64::max);
-        let touch = TOUCH * size;
-        self.crossings.clear();
+    /// What is seen from an eye in the given direction, of the curve as it is or, to `follow` its extents, stretched to a cube.
+    fn look(&mut self, vertices: &[V], direction: V, follow: bool, limit: usize) -> View {
+        self.place_eye(vertices, direction, follow);
+        self.passages.clear();
+        self.signs.clear();
         let n = vertices.len();
         for i in 0..n {
-            let (a, b) = (self.points[i], self.points[i + 1]);
-            let (low_x, high_x) = (a[0].min(b[0]), a[0].max(b[0]));
-            let (low_y, high_y) = (a[1].min(b[1]), a[1].max(b[1]));
+            let (a, b) = (self.picture[i], self.picture[i + 1]);
+            let (low_x, high_x) = (a[0].min(b[0]) - MARGIN, a[0].max(b[0]) + MARGIN);
+            let (low_y, high_y) = (a[1].min(b[1]) - MARGIN, a[1].max(b[1]) + MARGIN);
             let last = if i == 0 { n - 1 } else { n };
             for j in i + 2..last {
-                let (c, d) = (self.points[j], self.points[j + 1]);
+                let (c, d) = (self.picture[j], self.picture[j + 1]);
                 if (c[0].min(d[0]) > high_x)
                     | (c[0].max(d[0]) < low_x)
                     | (c[1].min(d[1]) > high_y)
@@ -112,108 +197,146 @@ impl Projector {
                 {
                     continue;
                 }
-                match cross(a, b, c, d, touch) {
+                match self.meet(vertices, i, j) {
                     Meeting::Apart => {}
-                    Meeting::Degenerate => return false,
-                    Meeting::Crossing { s, t, turn, height } => {
-                        if self.crossings.len() + 1 >= limit {
-                            return false;
-                        }
-                        let (s, t) = (i as f64 + s, j as f64 + t);
-                        // `turn` is the sense from the first edge to the second; the sign wants upper to lower.
-                        self.crossings.push(if height > 0.0 {
-                            Crossing {
-                                over: s,
-                                under: t,
-                                sign: if turn > 0.0 { 1 } else { -1 },
-                            }
-                        } else {
-                            Crossing {
-                                over: t,
-                                under: s,
-                                sign: if turn > 0.0 { -1 } else { 1 },
-                            }
-                        });
-                    }
+                    Meeting::Unclear => return View::Unusable,
+                    Meeting::Touch => return View::Touching,
+                    Meeting::Crossing if self.signs.len() > limit => return View::Unusable,
+                    Meeting::Crossing => {}
                 }
             }
         }
-        true
+        self.diagram().map_or(View::Unusable, View::Diagram)
     }
 
-    fn diagram(&self) -> Diagram {
-        let mut order: Vec<(f64, Visit)> = Vec::with_capacity(2 * self.crossings.len());
-        for (k, c) in self.crossings.iter().enumerate() {
-            order.push((
-                c.over,
-                Visit {
-                    crossing: k as u32,
-                    over: true,
-                },
-            ));
-            order.push((
-                c.under,
-                Visit {
-                    crossing: k as u32,
-                    over: false,
-                },
-            ));
+    /// Puts the eye outside the box of the curve and draws the picture.
+    fn place_eye(&mut self, vertices: &[V], direction: V, follow: bool) {
+        let (mut low, mut high) = (vertices[0], vertices[0]);
+        for x in vertices {
+            low = low.inf(x);
+            high = high.sup(x);
         }
-        order.sort_by(|a, b| a.0.total_cmp(&b.0));
-        Diagram {
-            visits: order.into_iter().map(|(_, visit)| visit).collect(),
-            signs: self.crossings.iter().map(|c| c.sign).collect(),
+        let centre = 0.5 * (low + high);
+        let largest = (high - low).amax();
+        // A flat curve must not be looked at from within its plane.
+        let follows = |e: f64| e > 0.0 && (follow || e < SLENDER * largest);
+        let half = (high - low).map(|e| 0.5 * if follows(e) { e } else { largest });
+        let w = direction.normalize();
+        let u = if w.x.abs() < 0.6 { V::x() } else { V::y() }
+            .cross(&w)
+            .normalize();
+        let v = w.cross(&u);
+        self.eye = centre + EYE * w.component_mul(&half);
+        self.from_eye.clear();
+        self.picture.clear();
+        for x in vertices.iter().chain([&vertices[0]]) {
+            self.from_eye.push(x - self.eye);
+            let y = (x - centre).component_div(&half);
+            let scale = EYE / (EYE - y.dot(&w));
+            self.picture.push([y.dot(&u) * scale, y.dot(&v) * scale]);
         }
+        self.normals.clear();
+        self.normals.extend(self.from_eye.windows(2).map(|e| {
+            let sizes = |p: &V, q: &V| {
+                let term = |i: usize, j: usize| (p[i] * q[j]).abs() + (p[j] * q[i]).abs();
+                V::new(term(1, 2), term(2, 0), term(0, 1))
+            };
+            (e[0].cross(&e[1]), sizes(&e[0], &e[1]))
+        }));
+    }
+
+    /// Six times the volume of eye, edge and vertex, and a bound of its error; if that leaves the sign open, a number of the right
+    /// sign.
+    fn side(&self, vertices: &[V], edge: usize, vertex: usize) -> (f64, f64) {
+        let n = vertices.len();
+        let (normal, sizes) = &self.normals[edge];
+        let to = &self.from_eye[vertex];
+        let volume = normal.dot(to);
+        let error = exact::VOLUME_ERROR * sizes.dot(&to.abs());
+        if volume.abs() > error {
+            return (volume, error);
+        }
+        let [a, b, c] = [edge, (edge + 1) % n, vertex % n].map(|k| &vertices[k]);
+        let sign = exact::volume(a, b, c, &self.eye);
+        let sign = if sign == 0.0 { 0.0 } else { sign.signum() };
+        (sign * f64::MIN_POSITIVE.max(volume.abs()), error)
+    }
+
+    /// Whether two edges cross, and how; a crossing is noted.
+    fn meet(&mut self, vertices: &[V], i: usize, j: usize) -> Meeting {
+        let (c, c_error) = self.side(vertices, i, j);
+        let (d, d_error) = self.side(vertices, i, j + 1);
+        if (c > 0.0 && d > 0.0) || (c < 0.0 && d < 0.0) {
+            return Meeting::Apart;
+        }
+        let (a, a_error) = self.side(vertices, j, i);
+        let (b, b_error) = self.side(vertices, j, i + 1);
+        if (a > 0.0 && b > 0.0) || (a < 0.0 && b < 0.0) {
+            return Meeting::Apart;
+        }
+        if a == 0.0 || b == 0.0 || c == 0.0 || d == 0.0 {
+            return Meeting::Unclear;
+        }
+        let n = vertices.len();
+        let ends = [i, (i + 1) % n, j, (j + 1) % n].map(|k| &vertices[k]);
+        let volume = exact::volume(ends[0], ends[1], ends[2], ends[3]);
+        if volume == 0.0 {
+            return Meeting::Touch;
+        }
+        // With d on the positive side, the second edge passes from right to left as seen along the ray: left to right for us.
+        let first_is_over = (volume > 0.0) == (d > 0.0);
+        let crossing = self.signs.len() as u32;
+        self.signs.push(if (d > 0.0) == first_is_over { -1 } else { 1 });
+        for (edge, (from, from_error), (to, to_error), over) in [
+            (i, (a, a_error), (b, b_error), first_is_over),
+            (j, (c, c_error), (d, d_error), !first_is_over),
+        ] {
+            let whole = from.abs() + to.abs();
+            let at = from.abs() / whole;
+            // Twice the errors, for the rounding of the quotient.
+            let error = 2.0 * (from_error + to_error) / whole + 4.0 * f64::EPSILON;
+            self.passages.push(Passage {
+                edge: edge as u32,
+                low: at - error,
+                high: at + error,
+                visit: Visit { crossing, over },
+            });
+        }
+        Meeting::Crossing
+    }
+
+    /// The diagram of the passages; none if the order of two on one edge is not known for certain.
+    fn diagram(&mut self) -> Option<Diagram> {
+        self.passages
+            .sort_by(|p, q| p.edge.cmp(&q.edge).then(p.low.total_cmp(&q.low)));
+        let in_order = |p: &[Passage]| p[0].edge != p[1].edge || p[0].high < p[1].low;
+        self.passages.windows(2).all(in_order).then(|| Diagram {
+            visits: self.passages.iter().map(|p| p.visit).collect(),
+            signs: self.signs.clone(),
+        })
     }
 }
 
 enum Meeting {
     Apart,
-    Degenerate,
-    Crossing {
-        s: f64,
-        t: f64,
-        turn: f64,
-        height: f64,
-    },
+    /// One's end lies on the other, as seen from here.
+    Unclear,
+    /// They have a point in common.
+    Touch,
+    Crossing,
 }
 
-/// Height, in units of the largest coordinate, below which two strands touch: rounding could put either above the other.
-const TOUCH: f64 = 1e-13;
-
-/// How two projected edges meet; heights are the third coordinates.
-fn cross(a: [f64; 3], b: [f64; 3], c: [f64; 3], d: [f64; 3], touch: f64) -> Meeting {
-    let e = [b[0] - a[0], b[1] - a[1]];
-    let f = [d[0] - c[0], d[1] - c[1]];
-    let g = [c[0] - a[0], c[1] - a[1]];
-    let turn = e[0] * f[1] - e[1] * f[0];
-    let s = g[0] * f[1] - g[1] * f[0];
-    let t = g[0] * e[1] - g[1] * e[0];
-    let size = turn.abs();
-    // Ends this close to the other edge make the order along the curve depend on rounding.
-    let margin = 1e-9 * size;
-    let (s_signed, t_signed) = if turn < 0.0 { (-s, -t) } else { (s, t) };
-    if s_signed < -margin
-        || t_signed < -margin
-        || s_signed > size + margin
-        || t_signed > size + margin
-    {
-        return Meeting::Apart;
-    }
-    if size == 0.0
-        || s_signed < margin
-        || t_signed < margin
-        || s_signed > size - margin
-        || t_signed > size - margin
-    {
-        return Meeting::Degenerate;
-    }
-    let (s, t) = (s_signed / size, t_signed / size);
-    let height = (a[2] + s * (b[2] - a[2])) - (c[2] + t * (d[2] - c[2]));
-    if height.abs() <= touch {
-        return Meeting::Degenerate;
-    }
-    Meeting::Crossing { s, t, turn, height }
+/// The diagram of one view, as it is seen.
+#[cfg(test)]
+pub(crate) fn one_view(vertices: &[V], seed: u64) -> Diagram {
+    let mut viewer = Viewer::default();
+    let mut views = fibonacci_directions(16, seed).filter_map(|direction| {
+        match viewer.look(vertices, direction, false, usize::MAX) {
+            View::Diagram(diagram) => Some(diagram),
+            _ => None,
+        }
+    });
+    views.next().expect("general position")
 }
 
 #[cfg(test)]
