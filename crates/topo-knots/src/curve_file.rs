@@ -1,12 +1,13 @@
 //! Curves from and to files: comma-separated values, XYZ, and Geomview's VECT, the format of Ridgerunner and KnotPlot.
 //!
-//! Reading order: `text` (bytes to lines), `cells` (lines to numbers), `columns` (which of them are coordinates), `table` (rows to components and
+//! Reading order: `text` (bytes to lines), `cells` (lines to numbers), `columns` and `rows` (which of them are coordinates), `table` (rows to components and
 //! frames), `xyz` (headers, counts and titles), `vect`, and `write`. Nothing of a file is dropped unsaid: what is no coordinate is told in
 //! [`CurveFile::notes`] or refused.
 
 mod cells;
 mod columns;
 mod fault;
+mod rows;
 mod source;
 mod table;
 mod text;
@@ -180,17 +181,14 @@ impl CurveFile {
         format: Option<CurveFormat>,
         frame: FrameChoice,
     ) -> Result<Self, KnotError> {
-        let format = match format {
-            Some(format) => format,
-            None if source::is_standard_input(path) => {
-                return Err(fault(
-                    path,
-                    "the standard input has no name to tell its format; give it",
-                ));
-            }
-            None => CurveFormat::of(path)?,
-        };
-        Self::parse(path, &source::read(path)?, format, frame)
+        if format.is_none() && source::is_standard_input(path) {
+            let problem = "the standard input has no name to tell its format; give it";
+            return Err(fault(path, problem));
+        }
+        // Read first: what is no file is better called so than an extension unknown.
+        let bytes = source::read(path)?;
+        let format = format.map_or_else(|| CurveFormat::of(path), Ok)?;
+        Self::parse(path, &bytes, format, frame)
     }
 
     /// Reads the content of a file; `path` names it in messages.
@@ -203,6 +201,9 @@ impl CurveFile {
         format: CurveFormat,
         choice: FrameChoice,
     ) -> Result<Self, KnotError> {
+        if bytes.is_empty() {
+            return Err(fault(path, "the file is empty"));
+        }
         let (text, note) = text::decode(path, bytes)?;
         let mut notes = Vec::from_iter(note);
         let mut frames = match format {
@@ -219,11 +220,7 @@ impl CurveFile {
         let n_frames = frames.len();
         let FrameOf { label, components } = frames.swap_remove(frame);
         if components.iter().all(|c| c.vertices.is_empty()) {
-            let problem = if bytes.is_empty() {
-                "the file is empty"
-            } else {
-                "there is no vertex in it"
-            };
+            let problem = "there is no vertex in it";
             return Err(fault(path, problem));
         }
         Ok(Self {

@@ -57,9 +57,8 @@ pub(crate) fn segments_meet(a: &V, b: &V, c: &V, d: &V) -> bool {
     if volume(a, b, c, d) != 0.0 {
         return false;
     }
-    let boxes_meet = (0..3).all(|k| {
-        a[k].min(b[k]) <= c[k].max(d[k]) && c[k].min(d[k]) <= a[k].max(b[k])
-    });
+    let boxes_meet =
+        (0..3).all(|k| a[k].min(b[k]) <= c[k].max(d[k]) && c[k].min(d[k]) <= a[k].max(b[k]));
     // In a plane they are apart if both ends of one are strictly on one side of the other, along any axis.
     let one_side = |s: f64, t: f64| s > 0.0 && t > 0.0 || s < 0.0 && t < 0.0;
     let apart = |k: usize| {
@@ -84,7 +83,8 @@ mod tests {
 
     /// Six times the volume of a tetrahedron of integers.
     fn integer_volume([a, b, c, d]: [[i64; 3]; 4]) -> i128 {
-        let minus = |p: [i64; 3], q: [i64; 3]| [0, 1, 2].map(|k| i128::from(p[k]) - i128::from(q[k]));
+        let minus =
+            |p: [i64; 3], q: [i64; 3]| [0, 1, 2].map(|k| i128::from(p[k]) - i128::from(q[k]));
         let (e, f, g) = (minus(b, a), minus(d, c), minus(c, a));
         (0..3)
             .map(|k| {
@@ -99,7 +99,9 @@ mod tests {
     fn volumes_have_the_sign_of_integer_arithmetic() {
         let mut state = 1_u64;
         let mut random = |n: i64| {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695);
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695);
             (state >> 33) as i64 % n
         };
         let (mut n_zero, mut n_rounded) = (0, 0);
@@ -107,7 +109,8 @@ mod tests {
             let mut point = || [0; 3].map(|_: i64| random(1 << 30));
             let (a, b, c) = (point(), point(), point());
             let (s, t) = (random(9) - 4, random(9) - 4);
-            let near = [0, 1, 2].map(|k| a[k] + s * (b[k] - a[k]) + t * (c[k] - a[k]) + random(3) - 1);
+            let near =
+                [0, 1, 2].map(|k| a[k] + s * (b[k] - a[k]) + t * (c[k] - a[k]) + random(3) - 1);
             let [p, q, r, w] = [a, b, c, near].map(|x| V::from(x.map(|c| c as f64)));
             let truth = integer_volume([a, b, c, near]).signum() as f64;
             let found = volume(&p, &q, &r, &w);

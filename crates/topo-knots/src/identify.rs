@@ -8,7 +8,7 @@ mod reduce;
 use serde::{Deserialize, Serialize};
 
 use crate::exact::segments_meet;
-use crate::invariant::{kauffman, kauffman_of_name, Diagram, least_crossing, usable_vertices};
+use crate::invariant::{Diagram, kauffman, kauffman_of_name, least_crossing, usable_vertices};
 use crate::name::{self, KnotName, UNKNOT};
 use crate::{Invariants, Jones, KnotError, KnotTable, V};
 use known::{Candidate, Found, candidates};

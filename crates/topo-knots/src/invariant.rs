@@ -13,8 +13,8 @@ use crate::identify::shortened;
 use crate::{KnotError, V};
 
 pub(crate) use diagram::Diagram;
-pub(crate) use kauffman::{kauffman, kauffman_of_name};
 pub use jones::Jones;
+pub(crate) use kauffman::{kauffman, kauffman_of_name};
 #[cfg(test)]
 pub(crate) use projection::one_view;
 pub(crate) use projection::{fibonacci_directions, least_crossing, usable_vertices};

@@ -33,9 +33,11 @@ pub enum KnotCommand {
   cargo xtask knot identify trajectory.xyz --frame last --json
   gunzip -c curve.xyz.gz | cargo xtask knot identify - --format xyz
 
-Files: x, y, z a line between blanks, commas or semicolons, or VECT. A header (also after #) names columns: x y z, and where wanted
-component, frame or time, closed. A blank line or NaN NaN NaN starts another component. What is no coordinate is said or refused.
-A curve whose ends are farther apart than twice its longest edge is taken for open unless the file says otherwise.
+Files: x, y, z a line between blanks, commas or semicolons, or VECT. A header, also
+after #, names the columns: x y z, and where wanted component, frame or time, closed.
+A blank line or NaN NaN NaN starts another component. What is no coordinate is said or
+refused. A curve whose ends are farther apart than twice its longest edge is taken for
+open unless the file says otherwise.
 
 Exit code: 0 named for certain, 3 one of several or consistent with a name, 2 refused.")]
     Identify(IdentifyArgs),

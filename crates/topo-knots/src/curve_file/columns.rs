@@ -2,6 +2,7 @@
 
 use super::cells::{number, split};
 use super::fault::quoted;
+use super::rows::Rows;
 
 /// Names of columns that are the same all along a curve at one time.
 const FRAMES: [&str; 6] = ["frame", "time", "step", "timestep", "snapshot", "cut"];
@@ -94,11 +95,12 @@ impl Columns {
     ///
     /// # Errors
     /// It cannot be told which are the coordinates.
-    pub(super) fn nameless(rows: &[Vec<&str>]) -> Result<Self, String> {
-        let Some(first) = rows.first() else {
-            return Ok(Self::default());
-        };
-        let n = first.len();
+    pub(super) fn nameless(first: &str, rows: &Rows) -> Result<Self, String> {
+        let mut cells = Vec::new();
+        split(first, &mut cells);
+        let n = cells.len();
+        // A line of text has at least one cell.
+        let start = cells.first().copied().unwrap_or("");
         let columns = |start: usize, note: Option<String>| Self {
             n,
             xyz: [start, start + 1, start + 2],
@@ -106,19 +108,19 @@ impl Columns {
             note,
             ..Self::default()
         };
-        let is_text = number(first[0]).is_err() && first[0].starts_with(char::is_alphabetic);
+        let is_text = number(start).is_err() && start.starts_with(char::is_alphabetic);
         let remedy =
             "give three columns, or name the columns in a first line such as `# x y z energy`";
         match n {
             0..3 => Err(format!("{n} numbers instead of 3; {remedy}")),
             3 => Ok(columns(0, None)),
-            _ if is_text && !counts(rows, 1) => {
+            _ if is_text && !rows.counts(1) => {
                 let note = format!(
                     "columns 5 to {n} have no name and were taken for values, not coordinates"
                 );
                 Ok(columns(1, (n > 4).then_some(note)))
             }
-            WITH_INDEX if !is_text => match [counts(rows, 0), counts(rows, n - 1)] {
+            WITH_INDEX if !is_text => match [rows.counts(0), rows.counts(n - 1)] {
                 [true, false] => Ok(columns(
                     1,
                     Some("column 1 counts the vertices and was taken for their index".to_owned()),
@@ -136,21 +138,6 @@ impl Columns {
             )),
         }
     }
-}
-
-/// Whether a column counts the rows, one by one; it may start anew, as it does with the next component.
-fn counts(rows: &[Vec<&str>], column: usize) -> bool {
-    let value = |row: &Vec<&str>| row.get(column).and_then(|cell| cell.parse::<i64>().ok());
-    let Some(start) = rows.first().and_then(value) else {
-        return false;
-    };
-    rows.len() > 2
-        && rows
-            .windows(2)
-            .all(|pair| match (value(&pair[0]), value(&pair[1])) {
-                (Some(a), Some(b)) => a.checked_add(1) == Some(b) || b == start && b < a,
-                _ => false,
-            })
 }
 
 /// The names in a header: lower case, without quotes and units in brackets.

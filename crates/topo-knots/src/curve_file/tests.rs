@@ -64,8 +64,13 @@ fn curves_survive_every_format() {
             assert_eq!(found.is_closed(), curve.is_closed(), "{name}");
         }
     }
-    let missing = read_curve(&folder.join("c.cvs")).expect_err("another extension");
-    assert!(missing.to_string().contains("extension"));
+    let is_folder = read_curve(&folder).expect_err("a folder").to_string();
+    assert!(is_folder.contains("this is a folder"), "{is_folder}");
+    std::fs::write(folder.join("c.obj"), "0 0 0").expect("written");
+    let unknown = read_curve(&folder.join("c.obj"))
+        .expect_err("unknown")
+        .to_string();
+    assert!(unknown.contains("extension tells no format"), "{unknown}");
     let missing = read_curve(&folder.join("d.csv"))
         .expect_err("another name")
         .to_string();
@@ -88,6 +93,7 @@ fn files_as_people_have_them() {
             texts.push((text.replace('\n', end).into_bytes(), format));
         }
         texts.push((format!("\u{feff}{text}").into_bytes(), format));
+        texts.push((format!("\u{feff}\u{feff}{text}").into_bytes(), format));
         texts.push((text.trim_end().as_bytes().to_vec(), format));
         texts.push((format!("{text}\u{1a}").into_bytes(), format));
         for little in [true, false] {
@@ -478,7 +484,7 @@ fn what_does_not_add_up_is_refused_with_its_line() {
             Csv,
             "line 3: `closed` changes",
         ),
-        (String::new(), Xyz, "no vertex"),
+        (String::new(), Xyz, "the file is empty"),
         ("x,y,z\n".to_owned(), Csv, "no vertex"),
         ("VECT\n0 0 0\n".to_owned(), Vect, "no vertex"),
         (
@@ -496,7 +502,8 @@ fn what_does_not_add_up_is_refused_with_its_line() {
     }
     assert!(refusal(b"\x1f\x8b\x08\0", Xyz).contains("gunzip"));
     assert!(refusal(b"\x93NUMPY\x01\0", Csv).contains("numpy.savetxt"));
-    assert!(refusal(b"\0\x01\x02", Xyz).contains("no text"));
+    assert!(refusal(b"\0\x01\x02\0", Xyz).contains("no text"));
+    assert!(refusal(b"\xff\xfe1\0 ", Xyz).contains("half a character"));
     let long = format!("0 0 0\n{}\n", "x".repeat(1 << 20));
     assert!(refusal(long, Xyz).len() < 300);
     assert!(matches!(

@@ -36,21 +36,27 @@ pub(super) fn decode<'a>(
     if let Some((_, what)) = PACKED.iter().find(|(head, _)| bytes.starts_with(head)) {
         return Err(fault(path, format!("this is {what}")));
     }
-    let (text, note) = match bytes {
-        [0xef, 0xbb, 0xbf, rest @ ..] => utf8_or_latin1(rest),
+    let (mut text, note) = match bytes {
         [0xff, 0xfe, rest @ ..] => utf16(path, rest, u16::from_le_bytes)?,
         [0xfe, 0xff, rest @ ..] => utf16(path, rest, u16::from_be_bytes)?,
+        _ if !bytes.contains(&0) => utf8_or_latin1(bytes),
         _ => match null_bytes(bytes) {
-            [0, 0] => utf8_or_latin1(bytes),
-            [even, odd] if even > odd => utf16(path, bytes, u16::from_be_bytes)?,
-            _ => utf16(path, bytes, u16::from_le_bytes)?,
+            [0, _] => utf16(path, bytes, u16::from_le_bytes)?,
+            [_, 0] => utf16(path, bytes, u16::from_be_bytes)?,
+            _ => {
+                let problem =
+                    "NUL bytes stand in it, so that this is no text file; give coordinates as text";
+                return Err(fault(path, problem));
+            }
         },
     };
-    // Editors of old end a text with Ctrl-Z.
-    let is_odd = |c: char| c.is_control() && !"\t\n\r\u{b}\u{c}\u{1a}".contains(c);
-    let first =
-        lines(&text).find_map(|(line, row)| Some((line, row.chars().find(|c| is_odd(*c))?)));
-    if let Some((line, c)) = first {
+    while let Some(rest) = text.strip_prefix('\u{feff}') {
+        text = match text {
+            Cow::Borrowed(text) => Cow::Borrowed(&text['\u{feff}'.len_utf8()..]),
+            Cow::Owned(_) => Cow::Owned(rest.to_owned()),
+        };
+    }
+    if let Some((line, c)) = first_control(&text) {
         let code = u32::from(c);
         return Err(fault_at(
             path,
@@ -61,6 +67,18 @@ pub(super) fn decode<'a>(
         ));
     }
     Ok((text, note))
+}
+
+/// The first control character that no text has, with its line.
+fn first_control(text: &str) -> Option<(usize, char)> {
+    // The first look is at bytes, since files are long: 0xc2 leads the control characters beyond ASCII, among others.
+    let suspect = |byte: u8| byte < 9 || (14..32).contains(&byte) || byte == 0x7f || byte == 0xc2;
+    if !text.bytes().any(suspect) {
+        return None;
+    }
+    // Editors of old end a text with Ctrl-Z.
+    let is_odd = |c: &char| c.is_control() && !"\t\n\r\u{b}\u{c}\u{1a}".contains(*c);
+    lines(text).find_map(|(line, row)| Some((line, row.chars().find(is_odd)?)))
 }
 
 /// Numbers of NUL bytes at even and at odd places: text has none, UTF-16 one for each digit.
@@ -127,7 +145,11 @@ pub(super) fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
             return None;
         }
         number += 1;
-        let end = rest.find(['\n', '\r']).unwrap_or(rest.len());
+        let is_end = |byte: &u8| *byte == b'\n' || *byte == b'\r';
+        let end = rest
+            .bytes()
+            .position(|byte| is_end(&byte))
+            .unwrap_or(rest.len());
         let (line, tail) = rest.split_at(end);
         rest = ["\r\r\n", "\r\n", "\n", "\r"]
             .iter()

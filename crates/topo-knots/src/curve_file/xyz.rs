@@ -5,7 +5,8 @@ use std::path::Path;
 use super::cells::{is_missing, number, split};
 use super::columns::{Columns, extended_names, header_names};
 use super::fault::{fault_at, quoted};
-use super::table::{Line, frames};
+use super::rows::Line;
+use super::table::frames;
 use super::{FrameOf, text};
 use crate::KnotError;
 
@@ -18,7 +19,7 @@ pub(super) fn csv(
     text: &str,
     notes: &mut Vec<String>,
 ) -> Result<Vec<FrameOf>, KnotError> {
-    plain(path, &trimmed(text), notes)
+    plain(path, trimmed(text), notes)
 }
 
 /// The frames of an XYZ file: molecular if it begins with a count, else plain.
@@ -33,7 +34,7 @@ pub(super) fn xyz(
         .position(|line| !is_comment(line) && !line.text.is_empty());
     match start {
         Some(start) if count(lines[start].text).is_some() => molecular(path, &lines, start, notes),
-        _ => plain(path, &lines, notes),
+        _ => plain(path, lines, notes),
     }
 }
 
@@ -63,49 +64,45 @@ fn uncommented<'a>(line: &Line<'a>) -> Line<'a> {
 }
 
 /// One table, with a header in a comment, in its first row, or none.
-fn plain(path: &Path, lines: &[Line], notes: &mut Vec<String>) -> Result<Vec<FrameOf>, KnotError> {
-    let mut rows: Vec<Line> = lines
-        .iter()
-        .filter(|line| !is_comment(line))
-        .map(uncommented)
-        .collect();
-    let Some(first) = rows.iter().position(|line| !line.is_break()) else {
+fn plain(
+    path: &Path,
+    mut lines: Vec<Line>,
+    notes: &mut Vec<String>,
+) -> Result<Vec<FrameOf>, KnotError> {
+    let is_row = |line: &Line| !is_comment(line) && !line.is_break();
+    let Some(first) = lines.iter().position(is_row) else {
         return Ok(Vec::new());
     };
+    let row = uncommented(&lines[first]);
     let mut cells = Vec::new();
-    split(rows[first].text, &mut cells);
+    split(row.text, &mut cells);
     // The index column of a written data frame has an empty name.
     let is_header = cells.iter().any(|cell| !is_missing(cell))
         && !cells.iter().any(|cell| number(cell).is_ok());
     let header = if is_header {
-        let line = rows.remove(first);
-        let columns =
-            Columns::named(header_names(line.text)).map_err(|e| fault_at(path, line.number, &e))?;
+        let columns = Columns::named(header_names(row.text));
+        let columns = columns.map_err(|problem| fault_at(path, row.number, &problem))?;
         Some(columns.ok_or_else(|| {
             let problem = format!(
                 "a header that names the columns x, y and z, or three numbers, must stand here, not {}",
-                quoted(line.text)
+                quoted(row.text)
             );
-            fault_at(path, line.number, &problem)
+            fault_at(path, row.number, &problem)
         })?)
     } else {
-        commented_header(path, lines, rows[first].number, cells.len())?
+        commented_header(path, &lines[..first], cells.len())?
     };
-    frames(path, &rows, header, None, notes)
+    lines.drain(..first + usize::from(is_header));
+    lines.retain(|line| !is_comment(line));
+    for line in &mut lines {
+        *line = uncommented(line);
+    }
+    frames(path, &lines, header, None, notes)
 }
 
 /// The columns that the comments before a table name: those of the last comment that does, with as many names as columns.
-fn commented_header(
-    path: &Path,
-    lines: &[Line],
-    first: usize,
-    n: usize,
-) -> Result<Option<Columns>, KnotError> {
-    let comments = lines
-        .iter()
-        .take_while(|line| line.number < first)
-        .filter(|line| is_comment(line));
-    for line in comments.collect::<Vec<_>>().into_iter().rev() {
+fn commented_header(path: &Path, lines: &[Line], n: usize) -> Result<Option<Columns>, KnotError> {
+    for line in lines.iter().rev().filter(|line| is_comment(line)) {
         let names = header_names(line.text.trim_start_matches(['#', '%']));
         if names.len() == n {
             match Columns::named(names) {

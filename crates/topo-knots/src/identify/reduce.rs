@@ -158,7 +158,11 @@ impl Reducer {
             volume(corners[0], corners[1], corners[2], &x[to]) == 0.0
                 && is_in_angle(&x[from], &x[b], &x[other], &x[to])
         };
-        let after = if n_edges > c { Some(next[c] as usize) } else { None };
+        let after = if n_edges > c {
+            Some(next[c] as usize)
+        } else {
+            None
+        };
         if before != usize::MAX && runs_in(a, before, c) || after.is_some_and(|d| runs_in(c, d, a))
         {
             return false;

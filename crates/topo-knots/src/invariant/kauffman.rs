@@ -185,7 +185,11 @@ impl Link {
                         }
                     }
                     Some((other, component)) if component == found.n_components => {
-                        let (over, under) = if out % 2 == 0 { (out, other) } else { (other, out) };
+                        let (over, under) = if out % 2 == 0 {
+                            (out, other)
+                        } else {
+                            (other, out)
+                        };
                         found.writhe += if (under + 4 - over) % 4 == 1 { 1 } else { -1 };
                     }
                     Some(_) => {}
@@ -233,7 +237,11 @@ impl Link {
         for k in 0..4 {
             let end = usize::from(self.twin[4 * last + k]);
             if c != last {
-                let end = if end / 4 == last { 4 * c + end % 4 } else { end };
+                let end = if end / 4 == last {
+                    4 * c + end % 4
+                } else {
+                    end
+                };
                 self.twin[4 * c + k] = end as u8;
                 self.twin[end] = (4 * c + k) as u8;
             }

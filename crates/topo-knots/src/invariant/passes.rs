@@ -171,7 +171,9 @@ impl FaceGraph {
                 return (cost[face] <= most).then(|| trace(face, &from, is_of_run));
             }
             let edges = &self.edges[face];
-            let turn = random.as_deref_mut().map_or(0, |state| next(state) as usize);
+            let turn = random
+                .as_deref_mut()
+                .map_or(0, |state| next(state) as usize);
             for k in 0..edges.len() {
                 let edge = edges[(k + turn) % edges.len()];
                 let [left, right] = self.sides[edge];

@@ -160,7 +160,12 @@ impl Viewer {
         let mut best: Option<Diagram> = None;
         for (k, direction) in fibonacci_directions(n_views, seed).enumerate() {
             let n_best = best.as_ref().map_or(usize::MAX, Diagram::n_crossings);
-            match self.look(vertices, direction, k % 2 == 1, n_best.saturating_mul(WORTH_A_TRY)) {
+            match self.look(
+                vertices,
+                direction,
+                k % 2 == 1,
+                n_best.saturating_mul(WORTH_A_TRY),
+            ) {
                 View::Touching => return Err(KnotError::Degenerate),
                 View::Unusable => {}
                 View::Diagram(mut diagram) => {
@@ -286,7 +291,8 @@ impl Viewer {
         // With d on the positive side, the second edge passes from right to left as seen along the ray: left to right for us.
         let first_is_over = (volume > 0.0) == (d > 0.0);
         let crossing = self.signs.len() as u32;
-        self.signs.push(if (d > 0.0) == first_is_over { -1 } else { 1 });
+        self.signs
+            .push(if (d > 0.0) == first_is_over { -1 } else { 1 });
         for (edge, (from, from_error), (to, to_error), over) in [
             (i, (a, a_error), (b, b_error), first_is_over),
             (j, (c, c_error), (d, d_error), !first_is_over),
