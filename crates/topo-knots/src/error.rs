@@ -137,7 +137,7 @@ pub enum KnotError {
     },
     /// A coordinate has digits too far below the size of the curve for exact arithmetic.
     #[error(
-        "vertex {vertex} has a coordinate more than 2^340 times smaller, in its last digit, than the curve is large; round it, to 0 say"
+        "vertex {vertex} has a coordinate so small beside the size of the curve that exact arithmetic cannot hold both; round it, to 0 say"
     )]
     Spread {
         /// Index of the vertex.

@@ -18,10 +18,12 @@ pub use open::{OpenKnotType, identify_open};
 
 /// Directions tried for a projection with few crossings; a reduced polygon has few anyway.
 const N_PROJECTIONS: usize = 8;
-/// Further directions where those leave more crossings than a certain name may have.
-const N_MORE_PROJECTIONS: usize = 24;
-/// Pass moves tried at random there.
-const N_SHUFFLES: usize = 200;
+/// Times that a curve is looked at again where the diagram keeps more crossings than a certain name may have.
+const N_MORE_LOOKS: u64 = 6;
+/// Most crossings of a diagram for which that is worth a try.
+const MOST_LOOKED_AT_AGAIN: usize = 20;
+/// Pass moves tried at random on each diagram then.
+const N_SHUFFLES: usize = 100;
 /// Fewest crossings of a knot other than the unknot whose Alexander polynomial is 1.
 const LEAST_TRIVIAL_ALEXANDER: usize = 11;
 
@@ -235,12 +237,20 @@ enum Care {
 
 /// The type of the closed chain in `reducer`, which is reduced on the way.
 fn classify(reducer: &mut Reducer, table: &KnotTable, care: Care) -> Result<KnotType, KnotError> {
-    let diagram = match diagram(reducer, table.complete_up_to() as usize)? {
-        Some(diagram) => diagram,
-        None => return Ok(KnotType::unknot(0)),
-    };
+    match diagram(reducer, table.complete_up_to() as usize)? {
+        Some(diagram) => classify_diagram(&diagram, table, care),
+        None => Ok(KnotType::unknot(0)),
+    }
+}
+
+/// The type of a diagram.
+fn classify_diagram(
+    diagram: &Diagram,
+    table: &KnotTable,
+    care: Care,
+) -> Result<KnotType, KnotError> {
     let n_crossings = diagram.n_crossings();
-    let invariants = Invariants::of_diagram(&diagram)?;
+    let invariants = Invariants::of_diagram(diagram)?;
     if invariants.alexander == [1] && n_crossings < LEAST_TRIVIAL_ALEXANDER {
         return Ok(KnotType::unknot(n_crossings));
     }
@@ -255,12 +265,12 @@ fn classify(reducer: &mut Reducer, table: &KnotTable, care: Care) -> Result<Knot
     let mut list = look_up(None);
     let mut jones = None;
     if care == Care::Handed || list.len() > 1 {
-        jones = Invariants::jones_of(&diagram);
+        jones = Invariants::jones_of(diagram);
         if jones.is_some() {
             list = look_up(jones.as_ref());
         }
         if list.len() > 1
-            && let Some(found) = kauffman(&diagram)
+            && let Some(found) = kauffman(diagram)
         {
             list.retain(|c| kauffman_of_name(&c.name).is_none_or(|own| own == found));
         }
@@ -302,12 +312,16 @@ fn diagram(reducer: &mut Reducer, enough: usize) -> Result<Option<Diagram>, Knot
         };
     }
     let mut diagram = least_crossing(&reducer.x, N_PROJECTIONS, 0)?;
-    if diagram.n_crossings() > enough {
-        let more = least_crossing(&reducer.x, N_MORE_PROJECTIONS, 1)?;
-        if more.n_crossings() < diagram.n_crossings() {
-            diagram = more;
+    diagram.shuffle(enough, N_SHUFFLES);
+    for seed in 1..=N_MORE_LOOKS {
+        if diagram.n_crossings() <= enough || diagram.n_crossings() > MOST_LOOKED_AT_AGAIN {
+            break;
         }
-        diagram.shuffle(enough, N_SHUFFLES);
+        let mut other = least_crossing(&reducer.x, N_PROJECTIONS, seed)?;
+        other.shuffle(enough, N_SHUFFLES);
+        if other.n_crossings() < diagram.n_crossings() {
+            diagram = other;
+        }
     }
     Ok((diagram.n_crossings() >= 3).then_some(diagram))
 }
@@ -319,5 +333,7 @@ fn touches_itself(x: &[V]) -> bool {
     (0..n).any(|i| (i + 2..n).any(|j| (i > 0 || j + 1 < n) && meet(i, j)))
 }
 
+#[cfg(test)]
+mod census_tests;
 #[cfg(test)]
 mod tests;

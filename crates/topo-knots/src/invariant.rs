@@ -16,6 +16,8 @@ pub(crate) use diagram::Diagram;
 pub use jones::Jones;
 pub(crate) use kauffman::{kauffman, kauffman_of_name};
 #[cfg(test)]
+pub(crate) use diagram::Visit;
+#[cfg(test)]
 pub(crate) use projection::one_view;
 pub(crate) use projection::{fibonacci_directions, least_crossing, usable_vertices};
 

@@ -228,7 +228,7 @@ mod tests {
     /// From every view of the table's braids, with a strand drawn far over the others, back to few crossings of the same knot.
     #[test]
     fn pass_moves_keep_the_knot() {
-        let (mut n_before, mut n_after) = (0, 0);
+        let (mut n_before, mut n_after, mut n_least) = (0, 0, 0);
         for knot in KnotTable::builtin().iter().filter(|k| !k.is_unknot()) {
             let curve = closed_braid(&knot.braid).expect("a knot");
             for seed in 0..8 {
@@ -246,8 +246,10 @@ mod tests {
                 assert_eq!(Invariants::jones_of(&diagram), kept, "{}", knot.name);
                 assert!(diagram.n_crossings() >= knot.crossing_number as usize);
                 n_after += diagram.n_crossings();
+                n_least += knot.crossing_number as usize;
             }
         }
-        assert!(2 * n_after < n_before, "{n_before} to {n_after}");
+        println!("{n_before} crossings, {n_after} left, {n_least} if all were minimal");
+        assert!(n_after <= n_least + n_least / 50);
     }
 }
