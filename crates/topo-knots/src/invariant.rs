@@ -13,10 +13,10 @@ use crate::identify::shortened;
 use crate::{KnotError, V};
 
 pub(crate) use diagram::Diagram;
-pub use jones::Jones;
-pub(crate) use kauffman::{kauffman, kauffman_of_name};
 #[cfg(test)]
 pub(crate) use diagram::Visit;
+pub use jones::Jones;
+pub(crate) use kauffman::{kauffman, kauffman_of_name};
 #[cfg(test)]
 pub(crate) use projection::one_view;
 pub(crate) use projection::{fibonacci_directions, least_crossing, usable_vertices};

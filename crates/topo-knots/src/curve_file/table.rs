@@ -222,7 +222,7 @@ fn decimal_comma(row: &str, n: usize) -> Option<String> {
     let words: Vec<&str> = row.split_whitespace().collect();
     let is_number =
         |word: &&str| word.contains(',') && word.replacen(',', ".", 1).parse::<f64>().is_ok();
-    let parted_by_blanks = words.len() >= n && words.iter().all(|word| is_number(&word));
+    let parted_by_blanks = words.len() >= n && words.iter().all(is_number);
     let cells = row.split(',').count();
     if parted_by_blanks {
         return Some(NumberFault::DecimalComma.message(words[0]));

@@ -64,7 +64,11 @@ fn all_primes_from_words_and_planar_diagrams() {
             let curve = closed_braid(&word).expect("a knot");
             let braided = identify(curve.vertices(), &table).expect("a knot");
             assert!(drawn.is_certain() && drawn.fits(expected), "{expected}");
-            let label = if name == "10_71" { "10_71|m10_71" } else { expected };
+            let label = if name == "10_71" {
+                "10_71|m10_71"
+            } else {
+                expected
+            };
             assert_eq!(drawn.label(), label, "{expected} from its diagram");
             assert_eq!(braided.label(), label, "{expected} from its word");
             assert_eq!(drawn.invariants, braided.invariants);
@@ -134,7 +138,11 @@ fn all_types_to_ten_crossings_are_told_apart() {
             kauffman(&diagram).expect("few crossings")
         };
         let own = |c: &&Candidate| kauffman_of_name(&c.name).expect("published") == of_diagram;
-        let left: Vec<String> = list.iter().filter(own).map(|c| c.name.to_string()).collect();
+        let left: Vec<String> = list
+            .iter()
+            .filter(own)
+            .map(|c| c.name.to_string())
+            .collect();
         if name.unsided().to_string() == "10_71" {
             assert_eq!(left, ["10_71", "m10_71"]);
         } else {
