@@ -16,7 +16,7 @@ const ELASTIC: [&str; 3] = ["bend", "twist", "stretch"];
 fn discharged(n_edges: usize) -> Discharge {
     let table = KnotTable::builtin();
     let knot = table.get("0_1").unwrap();
-    let tight = tighten_entry(knot, &TightenSettings::draft()).unwrap();
+    let tight = tighten_entry(&knot, &TightenSettings::draft()).unwrap();
     let parameters = RodParameters {
         n_edges,
         ..Default::default()

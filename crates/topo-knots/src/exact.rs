@@ -3,7 +3,8 @@
 //! Coordinates must be within the range that [`usable_vertices`](crate::invariant::usable_vertices) admits, so that nothing on the way
 //! overflows or underflows.
 //!
-//! References: `shewchuk1997`.
+//! # References
+//! `shewchuk1997`
 
 use robust::{Coord, Coord3D};
 

@@ -23,7 +23,7 @@ const N_MORE_LOOKS: u64 = 6;
 /// Most crossings of a diagram for which that is worth a try.
 const MOST_LOOKED_AT_AGAIN: usize = 20;
 /// Pass moves tried at random on each diagram then.
-const N_SHUFFLES: usize = 100;
+const N_SHUFFLES: usize = 300;
 /// Fewest crossings of a knot other than the unknot whose Alexander polynomial is 1.
 const LEAST_TRIVIAL_ALEXANDER: usize = 11;
 

@@ -169,10 +169,10 @@ impl KnotTable {
             return Ok(Cow::Borrowed(entry));
         }
         let sum = self.canonical_name(name);
-        if name.contains('#') {
-            if let Some(entry) = self.listed(&sum.to_string()) {
-                return Ok(Cow::Borrowed(entry));
-            }
+        if name.contains('#')
+            && let Some(entry) = self.listed(&sum.to_string())
+        {
+            return Ok(Cow::Borrowed(entry));
         }
         if !sum.is_sum() {
             return self.of_census(name).ok_or_else(|| self.unknown(name));

@@ -425,3 +425,104 @@ fn size_does_not_matter() {
         assert!(open.n_closures == 8, "{scale:e}");
     }
 }
+
+/// A trefoil of six vertices with whole coordinates; the others scaled by powers of two. A positive diagonal map keeps the type.
+#[test]
+fn stretched_curves_keep_their_name() {
+    let table = KnotTable::builtin();
+    let stick = [
+        [-2.0, 2.0, 1.0],
+        [4.0, 0.0, 3.0],
+        [-4.0, -4.0, -4.0],
+        [1.0, 3.0, 3.0],
+        [3.0, 0.0, 3.0],
+        [0.0, 2.0, 0.0],
+    ]
+    .map(V::from);
+    let of = |x: &[V]| identify(x, &table).expect("in general position");
+    let name = of(&stick).label();
+    assert_eq!(name, "3_1");
+    for powers in [
+        [27, 0, 0],
+        [27, 0, -27],
+        [27, 27, 27],
+        [20, 0, -20],
+        [-300, 200, 0],
+        [900, -900, 0],
+    ] {
+        let scale = V::from(powers.map(|p| f64::from(p).exp2()));
+        let x = stick.map(|x| x.component_mul(&scale));
+        assert!(of(&x).is_certain(), "{powers:?}");
+        assert_eq!(of(&x).label(), "3_1", "{powers:?}");
+        // A shear, exact as well, and a turn that rounds.
+        let sheared = stick.map(|x| V::new(x.x + x.y, x.y - x.z, x.z).component_mul(&scale));
+        assert_eq!(of(&sheared).label(), "3_1", "{powers:?}");
+    }
+    for knot in ["8_18", "9_42", "10_123"] {
+        let curve = braid(&table.get(knot).expect("known").braid);
+        let scale = V::new(20_f64.exp2(), 1.0, (-20_f64).exp2());
+        let x: Vec<V> = curve.iter().map(|x| x.component_mul(&scale)).collect();
+        assert_eq!(of(&x).label(), knot);
+    }
+}
+
+/// Strands a hair apart: the gap of the last digit decides, on either side, and no gap at all is refused.
+#[test]
+fn a_gap_of_the_last_digit_decides() {
+    let table = KnotTable::builtin();
+    let mut n_named = 0;
+    for word in [[1, 1, 1], [-1, -1, -1]] {
+        let curve = braid(&word);
+        for power in [-20, -60, -160] {
+            let flat: Vec<V> = curve
+                .iter()
+                .map(|x| V::new(x.x, x.y, x.z * f64::from(power).exp2()))
+                .collect();
+            let hand = if word[0] > 0 { "3_1" } else { "m3_1" };
+            assert_eq!(identify(&flat, &table).expect("a knot").label(), hand);
+            n_named += 1;
+        }
+        let flat: Vec<V> = curve.iter().map(|x| V::new(x.x, x.y, 0.0)).collect();
+        assert!(matches!(
+            identify(&flat, &table),
+            Err(KnotError::Degenerate)
+        ));
+    }
+    assert_eq!(n_named, 6);
+    // One strand of a bow-tie above the other by a unit in the last place, and not at all.
+    for (up, touches) in [(f64::EPSILON, false), (0.0, true)] {
+        let bow = [
+            V::new(0.0, 0.0, 1.0),
+            V::new(2.0, 2.0, 1.0),
+            V::new(2.0, 0.0, 1.0 + up),
+            V::new(0.0, 2.0, 1.0 + up),
+        ];
+        assert_eq!(identify(&bow, &table).is_err(), touches);
+    }
+    // The strand into (0, 0, 0) lies in the plane of the next two edges and crosses the second.
+    let crossing = [
+        V::new(0.0, 0.0, 0.0),
+        V::new(4.0, 0.0, 0.0),
+        V::new(0.0, 4.0, 0.0),
+        V::new(0.0, 5.0, 2.0),
+        V::new(3.0, 6.0, 3.0),
+        V::new(4.0, 5.0, 1.0),
+        V::new(3.0, 3.0, 0.0),
+    ];
+    // That into (1, 1, 0) ends on the first edge.
+    let touching = [
+        V::new(0.0, 0.0, 0.0),
+        V::new(2.0, 2.0, 0.0),
+        V::new(3.0, 0.0, 1.0),
+        V::new(1.0, 1.0, 0.0),
+        V::new(0.0, 3.0, 2.0),
+        V::new(-1.0, 1.0, 1.0),
+    ];
+    for first in 0..crossing.len() {
+        let mut turned = crossing;
+        turned.rotate_left(first);
+        for x in [&turned[..], &touching] {
+            assert!(matches!(identify(x, &table), Err(KnotError::Degenerate)));
+        }
+    }
+}
