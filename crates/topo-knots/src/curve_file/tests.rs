@@ -123,6 +123,13 @@ fn files_as_people_have_them() {
             Csv,
         ),
         (rows.clone(), Csv),
+        (
+            format!(
+                "# z [h] x y speed\n{}",
+                lines(|k, [x, y, z]| format!("{z} {x} {y} 0.{k}"))
+            ),
+            Xyz,
+        ),
         (csv.replace(',', ";"), Csv),
         (csv.replace(',', "\t"), Csv),
         (
