@@ -18,8 +18,8 @@ use topo_core::{
     checkpoint_bytes, parse_checkpoint,
 };
 use topo_knots::{
-    CurveFormat, Invariants, KnotEntry, KnotError, TightKnot, closed_braid, curve_text,
-    n_components, parse_braid, parse_components,
+    CurveFile, CurveFormat, FrameChoice, Invariants, KnotEntry, KnotError, TightKnot, closed_braid,
+    curve_text, n_components, parse_braid, parse_components,
 };
 use topo_nematic::{
     ChargeSettings, DischargeSettings, FlowParameters, NematicAccuracy, NematicBattery,
@@ -157,10 +157,12 @@ pub fn vect(data: &[u8]) {
 }
 
 fn curve(data: &[u8], format: CurveFormat) {
-    let Ok(text) = std::str::from_utf8(data) else {
+    drop(parse_components(named(), data, format));
+    let Ok(file) = CurveFile::parse(named(), data, format, FrameChoice::Last) else {
         return;
     };
-    for component in parse_components(named(), text, format).unwrap_or_default() {
+    spelt_otherwise(data, format, &file);
+    for component in file.components {
         let closed = component.closed.unwrap_or(false);
         let Ok(curve) = Polyline::new(component.vertices, closed) else {
             continue;
@@ -172,6 +174,28 @@ fn curve(data: &[u8], format: CurveFormat) {
         if format == CurveFormat::Vect {
             assert_eq!(again[0].closed, Some(closed));
         }
+    }
+}
+
+/// The same text with other ends of lines, a byte-order mark or in UTF-16 holds the same curve.
+fn spelt_otherwise(data: &[u8], format: CurveFormat, file: &CurveFile) {
+    let Ok(text) = std::str::from_utf8(data) else {
+        return;
+    };
+    if text.starts_with('\u{feff}') || text.contains('\r') {
+        return;
+    }
+    let utf16 = text.encode_utf16().flat_map(u16::to_be_bytes);
+    for variant in [
+        text.replace('\n', "\r\n").into_bytes(),
+        text.replace('\n', "\r").into_bytes(),
+        format!("\u{feff}{text}").into_bytes(),
+        [0xfe, 0xff].into_iter().chain(utf16).collect(),
+    ] {
+        let again = CurveFile::parse(named(), &variant, format, FrameChoice::Last);
+        let again = again.expect("the same text");
+        same(&again.components, &file.components);
+        same(&again.frame, &file.frame);
     }
 }
 

@@ -336,6 +336,23 @@ proptest! {
         }
     }
 
+    /// Other ends of lines, a byte-order mark and UTF-16 change no bit of a curve.
+    #[test]
+    fn curves_do_not_depend_on_the_encoding(points in points(4..30), end in prop_oneof!["\r\n", "\r", "\n"]) {
+        let curve = Polyline::new(points, true);
+        prop_assume!(curve.is_ok());
+        let curve = curve.unwrap();
+        for format in [CurveFormat::Csv, CurveFormat::Xyz, CurveFormat::Vect] {
+            let text = format!("\u{feff}{}", curve_text(&curve, format).replace('\n', &end));
+            let utf16 = |bytes: fn(u16) -> [u8; 2]| text.encode_utf16().flat_map(bytes).collect::<Vec<u8>>();
+            for bytes in [text.clone().into_bytes(), utf16(u16::to_le_bytes), utf16(u16::to_be_bytes)] {
+                let back = parse_components(named(), &bytes, format).unwrap();
+                let bits = |v: &[V]| v.iter().flat_map(|x| [x.x, x.y, x.z]).map(f64::to_bits).collect::<Vec<_>>();
+                prop_assert_eq!(bits(&back[0].vertices), bits(curve.vertices()));
+            }
+        }
+    }
+
     #[test]
     fn any_text_is_read_or_refused(text in "[VECT0-9 .,\\-ex#yz\n]{0,60}") {
         for format in [CurveFormat::Csv, CurveFormat::Xyz, CurveFormat::Vect] {

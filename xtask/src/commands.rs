@@ -23,11 +23,13 @@ use crate::cli::{Cli, Command, WorkArgs};
 use crate::error::XtaskError;
 use crate::figures::Quality;
 use crate::interrupt;
+use std::process::ExitCode;
 use topo_analysis::{Effort, SweepSettings};
 
-/// Runs the command.
-pub fn dispatch(cli: Cli) -> Result<(), XtaskError> {
+/// Runs the command; only `knot identify` ends well in more ways than one.
+pub fn dispatch(cli: Cli) -> Result<ExitCode, XtaskError> {
     match cli.command {
+        Command::Knot(args) => return knot::run(&args),
         Command::Figures(args) => figures::run(&args),
         Command::Run(args) => run::run(&args),
         Command::Accuracy(args) => accuracy::run(&args),
@@ -39,11 +41,11 @@ pub fn dispatch(cli: Cli) -> Result<(), XtaskError> {
         Command::Determinism(args) => determinism::run(&args),
         Command::Export(args) => export::run(&args),
         Command::Fuzz(args) => fuzz::run(&args),
-        Command::Knot(args) => knot::run(&args),
         Command::Test(args) => test::run(&args),
         Command::Ci => ci::run(),
         Command::Bench(args) => bench::run(&args),
     }
+    .map(|()| ExitCode::SUCCESS)
 }
 
 /// What the options of a computation ask for.

@@ -28,7 +28,7 @@ use std::process::ExitCode;
 fn main() -> ExitCode {
     // A closed pipe (`| head`) is no reason to panic, and so errors of writing are dropped.
     match commands::dispatch(cli::Cli::parse()) {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(code) => code,
         Err(e) => {
             eprintln!("error: {e}");
             ExitCode::from(e.exit_code())

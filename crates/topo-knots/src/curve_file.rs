@@ -1,11 +1,30 @@
-//! Curves from and to files: comma-separated values, plain XYZ, and Geomview's VECT, the format of Ridgerunner and KnotPlot.
+//! Curves from and to files: comma-separated values, XYZ, and Geomview's VECT, the format of Ridgerunner and KnotPlot.
+//!
+//! Reading order: `text` (bytes to lines), `cells` (lines to numbers), `columns` and `rows` (which of them are coordinates), `table` (rows to components and
+//! frames), `xyz` (headers, counts and titles), `vect`, and `write`. Nothing of a file is dropped unsaid: what is no coordinate is told in
+//! [`CurveFile::notes`] or refused.
 
-use std::fmt::Write as _;
+mod cells;
+mod columns;
+mod fault;
+mod rows;
+mod source;
+mod table;
+mod text;
+mod vect;
+mod write;
+mod xyz;
+
 use std::path::Path;
-
-use topo_core::{Polyline, write_atomic_bytes};
+use std::str::FromStr;
 
 use crate::{KnotError, V};
+use fault::{fault, quoted};
+
+pub use write::{curve_text, write_curve};
+
+/// How many times the longest edge the gap between the ends may measure for a curve of which nothing is told to be closed.
+const LONGEST_CLOSING: f64 = 2.0;
 
 /// A file format for curves.
 ///
@@ -14,55 +33,256 @@ use crate::{KnotError, V};
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum CurveFormat {
-    /// A header with the columns `x`, `y`, `z`, then a vertex a line.
+    /// A header with the columns `x`, `y`, `z`, also after a `#`, then a vertex a line between commas or semicolons. Further columns may tell the
+    /// component (`component`, `line`, `chain`), the frame (`frame`, `time`, `cut`) and whether it is `closed`.
     Csv,
-    /// Three numbers a line; a blank line starts another component, `#` a comment. The molecular form (a count, a title, then an
-    /// element with its three numbers a line) is read too.
+    /// Three numbers a line; a blank line, `NaN NaN NaN` or `X` starts another component, `#` a comment. A header is read as in `Csv`. The molecular
+    /// form (a count, a title, then an element with its three numbers a line, and again for each frame) is read too.
     Xyz,
     /// Geomview's VECT: components with their numbers of vertices, negative for closed ones.
     Vect,
 }
 
 impl CurveFormat {
-    /// The format that the extension of a file's name stands for: `csv`, `xyz` or `txt`, `vect` or `vec`.
+    /// The format that the extension of a file's name stands for: `csv` or `tsv`, `xyz`, `txt` or `dat`, `vect` or `vec`.
     ///
     /// # Errors
     /// [`KnotError::CurveFile`] for another extension.
     pub fn of(path: &Path) -> Result<Self, KnotError> {
-        let extension = path.extension().and_then(|e| e.to_str());
-        match extension.map(str::to_ascii_lowercase).as_deref() {
-            Some("csv") => Ok(Self::Csv),
-            Some("xyz" | "txt" | "dat") => Ok(Self::Xyz),
-            Some("vect" | "vec") => Ok(Self::Vect),
-            _ => Err(fault(
+        let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("");
+        extension.parse().map_err(|_: KnotError| {
+            fault(
                 path,
-                "the extension tells no format; use .csv, .xyz or .vect".to_owned(),
+                "the extension tells no format; use .csv, .xyz or .vect",
+            )
+        })
+    }
+}
+
+impl FromStr for CurveFormat {
+    type Err = KnotError;
+
+    /// The format of a name such as `csv`.
+    fn from_str(name: &str) -> Result<Self, KnotError> {
+        match name.to_ascii_lowercase().as_str() {
+            "csv" | "tsv" => Ok(Self::Csv),
+            "xyz" | "txt" | "dat" => Ok(Self::Xyz),
+            "vect" | "vec" => Ok(Self::Vect),
+            _ => Err(fault(
+                Path::new(name),
+                "no format for curves; use csv, xyz or vect",
             )),
         }
     }
 }
 
-/// One component of a file: its vertices, and whether it is closed where the format says so.
+/// One component of a file: its vertices, and whether it is closed where the file says so.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CurveComponent {
     /// Vertices in order; a last one that repeats the first is left out and makes the component closed.
     pub vertices: Vec<V>,
-    /// Whether the curve is closed; `None` in formats that do not tell.
+    /// Whether the curve is closed; `None` where the file does not tell.
     pub closed: Option<bool>,
+    /// Whether the file repeats the first vertex at the end.
+    pub repeats_first: bool,
 }
 
-/// Reads all components of a file, in the format that its extension stands for.
+impl CurveComponent {
+    pub(crate) fn new(vertices: Vec<V>, closed: Option<bool>) -> Self {
+        Self {
+            vertices,
+            closed,
+            repeats_first: false,
+        }
+    }
+
+    /// Length of the gap between the ends over the longest edge: near 1 where the file leaves out the closing edge of a closed curve.
+    pub fn gap_over_longest_edge(&self) -> f64 {
+        // Scaled first: squares of coordinates may overflow.
+        let size = self.vertices.iter().map(V::amax).fold(0.0, f64::max);
+        let unit = if size > 0.0 { size } else { 1.0 };
+        let distance = |a: &V, b: &V| (a / unit - b / unit).norm();
+        let edges = self.vertices.windows(2);
+        let longest = edges.map(|e| distance(&e[0], &e[1])).fold(0.0, f64::max);
+        match (self.vertices.first(), self.vertices.last()) {
+            (Some(first), Some(last)) if longest > 0.0 => distance(first, last) / longest,
+            _ => 0.0,
+        }
+    }
+
+    /// Whether the curve is closed: what the file tells, else whether its ends are no farther apart than twice the longest edge.
+    ///
+    /// The closing edge of a closed polygon is an edge as the others are; one that is longer than all of them by far was never there.
+    ///
+    /// # Validation
+    /// `far_ends_make_an_open_curve`.
+    pub fn is_closed(&self) -> bool {
+        self.closed
+            .unwrap_or_else(|| self.gap_over_longest_edge() <= LONGEST_CLOSING)
+    }
+
+    /// The vertices as those of an open curve, with the closing edge if the file gives it by repeating the first vertex.
+    pub fn open_vertices(&self) -> Vec<V> {
+        let again = self.vertices.first().filter(|_| self.repeats_first);
+        self.vertices.iter().chain(again).copied().collect()
+    }
+}
+
+/// Which frame of a file to read, if it holds a curve at several times.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum FrameChoice {
+    /// The only one; a file with several is refused.
+    #[default]
+    Only,
+    /// The last one.
+    Last,
+    /// The one with this number, from 1.
+    Number(usize),
+}
+
+/// A frame of a file that holds several.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct CurveFrame {
+    /// Its number, from 1.
+    pub number: usize,
+    /// How many there are.
+    pub n_frames: usize,
+    /// Its title or its time, if the file gives one.
+    pub label: Option<String>,
+}
+
+/// What a curve file holds.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CurveFile {
+    /// The components, of the frame that was chosen; at least one.
+    pub components: Vec<CurveComponent>,
+    /// Which frame that is, if there are several.
+    pub frame: Option<CurveFrame>,
+    /// What a reader should know: how columns without names, another encoding and the ends were taken.
+    pub notes: Vec<String>,
+}
+
+/// The curves of one frame.
+struct FrameOf {
+    label: Option<String>,
+    components: Vec<CurveComponent>,
+}
+
+impl CurveFile {
+    /// Reads a file, in `format` or in that which its extension stands for; `-` is the standard input.
+    ///
+    /// # Errors
+    /// [`KnotError::Io`], [`KnotError::CurveFile`] naming line and remedy.
+    ///
+    /// # Validation
+    /// `files_as_people_have_them`, `what_does_not_add_up_is_refused_with_its_line`.
+    pub fn read(
+        path: &Path,
+        format: Option<CurveFormat>,
+        frame: FrameChoice,
+    ) -> Result<Self, KnotError> {
+        if format.is_none() && source::is_standard_input(path) {
+            let problem = "the standard input has no name to tell its format; give it";
+            return Err(fault(path, problem));
+        }
+        // Read first: what is no file is better called so than an extension unknown.
+        let bytes = source::read(path)?;
+        let format = format.map_or_else(|| CurveFormat::of(path), Ok)?;
+        Self::parse(path, &bytes, format, frame)
+    }
+
+    /// Reads the content of a file; `path` names it in messages.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read), but for those of the file system.
+    pub fn parse(
+        path: &Path,
+        bytes: &[u8],
+        format: CurveFormat,
+        choice: FrameChoice,
+    ) -> Result<Self, KnotError> {
+        if bytes.is_empty() {
+            return Err(fault(path, "the file is empty"));
+        }
+        let (text, note) = text::decode(path, bytes)?;
+        let mut notes = Vec::from_iter(note);
+        let mut frames = match format {
+            CurveFormat::Csv => xyz::csv(path, &text, &mut notes)?,
+            CurveFormat::Xyz => xyz::xyz(path, &text, &mut notes)?,
+            CurveFormat::Vect => vec![FrameOf {
+                label: None,
+                components: vect::vect(path, &text)?,
+            }],
+        };
+        let mut seen = std::collections::HashSet::new();
+        notes.retain(|note| seen.insert(note.clone()));
+        let frame = chosen(path, &frames, choice)?;
+        let n_frames = frames.len();
+        let FrameOf { label, components } = frames.swap_remove(frame);
+        if components.iter().all(|c| c.vertices.is_empty()) {
+            let problem = "there is no vertex in it";
+            return Err(fault(path, problem));
+        }
+        Ok(Self {
+            components: components.into_iter().map(closed_by_repetition).collect(),
+            frame: (n_frames > 1).then_some(CurveFrame {
+                number: frame + 1,
+                n_frames,
+                label,
+            }),
+            notes,
+        })
+    }
+}
+
+/// The index of the frame to read.
+fn chosen(path: &Path, frames: &[FrameOf], choice: FrameChoice) -> Result<usize, KnotError> {
+    let n = frames.len();
+    let name = |k: usize| {
+        frames[k]
+            .label
+            .as_deref()
+            .map_or_else(String::new, |label| format!(" ({})", quoted(label)))
+    };
+    match choice {
+        _ if n == 0 => Err(fault(path, "there is no vertex in it")),
+        FrameChoice::Number(k) if k == 0 || k > n => Err(fault(
+            path,
+            format!(
+                "there is no frame {k}; frames are 1{} to {n}{}",
+                name(0),
+                name(n - 1)
+            ),
+        )),
+        FrameChoice::Number(k) => Ok(k - 1),
+        FrameChoice::Only if n > 1 => Err(fault(
+            path,
+            format!(
+                "there are {n} frames, 1{} to {n}{}; choose one or give a file of one",
+                name(0),
+                name(n - 1)
+            ),
+        )),
+        FrameChoice::Only | FrameChoice::Last => Ok(n - 1),
+    }
+}
+
+fn closed_by_repetition(mut component: CurveComponent) -> CurveComponent {
+    let vertices = &mut component.vertices;
+    if vertices.len() > 3 && vertices.first() == vertices.last() {
+        vertices.pop();
+        component.closed = Some(true);
+        component.repeats_first = true;
+    }
+    component
+}
+
+/// Reads all components of a file of one frame, in the format that its extension stands for.
 ///
 /// # Errors
-/// [`KnotError::Io`], [`KnotError::CurveFile`] naming the line, [`KnotError::NotFinite`].
+/// As [`CurveFile::read`], and [`KnotError::CurveFile`] for a file of several frames.
 pub fn read_components(path: &Path) -> Result<Vec<CurveComponent>, KnotError> {
-    let format = CurveFormat::of(path)?;
-    let text = std::fs::read_to_string(path).map_err(|source| KnotError::Io {
-        path: path.to_owned(),
-        action: "read",
-        source,
-    })?;
-    parse_components(path, &text, format)
+    Ok(CurveFile::read(path, None, FrameChoice::Only)?.components)
 }
 
 /// Reads the only component of a file.
@@ -81,330 +301,22 @@ pub(crate) fn only(
     let mut components = components.into_iter();
     match (components.next(), n_components) {
         (Some(component), 1) => Ok(component),
-        (None, _) => Err(fault(path, "there is no vertex in it".to_owned())),
+        (None, _) => Err(fault(path, "there is no vertex in it")),
         _ => Err(KnotError::Link { n_components }),
     }
 }
 
-/// Writes a curve in the format that the extension of `path` stands for.
-///
-/// # Errors
-/// [`KnotError::CurveFile`] for an unknown extension, [`KnotError::File`] if it cannot be written.
-pub fn write_curve(path: &Path, curve: &Polyline) -> Result<(), KnotError> {
-    let text = curve_text(curve, CurveFormat::of(path)?);
-    Ok(write_atomic_bytes(path, text.as_bytes())?)
-}
-
-/// The text of a curve in a format; numbers read back to the bit.
-pub fn curve_text(curve: &Polyline, format: CurveFormat) -> String {
-    let n = curve.n_vertices();
-    let (mut text, comma) = match format {
-        CurveFormat::Csv => ("x,y,z\n".to_owned(), ','),
-        CurveFormat::Xyz => (String::new(), ' '),
-        CurveFormat::Vect => {
-            let sign = if curve.is_closed() { "-" } else { "" };
-            (format!("VECT\n1 {n} 0\n{sign}{n}\n0\n"), ' ')
-        }
-    };
-    for x in curve.vertices() {
-        // Writing to a string cannot fail.
-        let _ = writeln!(text, "{}{comma}{}{comma}{}", x.x, x.y, x.z);
-    }
-    text
-}
-
-/// The components in the text of a file; `path` names it in messages.
+/// The components in the content of a file of one frame; `path` names it in messages.
 ///
 /// # Errors
 /// As [`read_components`], but for those of the file system.
-///
-/// # Validation
-/// `curves_survive_every_format`.
 pub fn parse_components(
     path: &Path,
-    text: &str,
+    bytes: impl AsRef<[u8]>,
     format: CurveFormat,
 ) -> Result<Vec<CurveComponent>, KnotError> {
-    let mut components = match format {
-        CurveFormat::Csv => csv(path, text)?,
-        CurveFormat::Xyz => xyz(path, text)?,
-        CurveFormat::Vect => vect(path, text)?,
-    };
-    for component in &mut components {
-        let finite = |x: &V| x.iter().all(|c| c.is_finite());
-        if let Some(vertex) = component.vertices.iter().position(|x| !finite(x)) {
-            return Err(KnotError::NotFinite { vertex });
-        }
-        let vertices = &mut component.vertices;
-        if vertices.len() > 3 && vertices.first() == vertices.last() {
-            vertices.pop();
-            component.closed = Some(true);
-        }
-    }
-    Ok(components)
-}
-
-fn fault(path: &Path, problem: String) -> KnotError {
-    KnotError::CurveFile {
-        path: path.to_owned(),
-        problem,
-    }
-}
-
-fn number(path: &Path, line: usize, cell: &str) -> Result<f64, KnotError> {
-    cell.parse()
-        .map_err(|_| fault(path, format!("line {line}: `{cell}` is not a number")))
-}
-
-fn csv(path: &Path, text: &str) -> Result<Vec<CurveComponent>, KnotError> {
-    let mut lines = (1..).zip(text.lines()).filter(|(_, l)| {
-        let l = l.trim();
-        !l.is_empty() && !l.starts_with('#')
-    });
-    let header = lines.next().map_or("", |(_, line)| line);
-    let names: Vec<String> = header
-        .split(',')
-        .map(|cell| cell.trim().trim_matches('"').to_ascii_lowercase())
-        .collect();
-    let mut columns = [0; 3];
-    for (column, name) in columns.iter_mut().zip(["x", "y", "z"]) {
-        *column = names.iter().position(|n| n == name).ok_or_else(|| {
-            fault(
-                path,
-                format!("the first line must be a header that names the columns x, y and z; it is `{header}`"),
-            )
-        })?;
-    }
-    let mut vertices = Vec::new();
-    for (line, row) in lines {
-        let cells: Vec<&str> = row.split(',').map(str::trim).collect();
-        if cells.len() != names.len() {
-            let (found, expected) = (cells.len(), names.len());
-            return Err(fault(
-                path,
-                format!("line {line}: {found} columns instead of {expected}"),
-            ));
-        }
-        let mut x = V::zeros();
-        for (k, column) in columns.iter().enumerate() {
-            x[k] = number(path, line, cells[*column])?;
-        }
-        vertices.push(x);
-    }
-    Ok(Vec::from_iter((!vertices.is_empty()).then_some(
-        CurveComponent {
-            vertices,
-            closed: None,
-        },
-    )))
-}
-
-fn xyz(path: &Path, text: &str) -> Result<Vec<CurveComponent>, KnotError> {
-    let mut lines: Vec<(usize, &str)> = (1..).zip(text.lines().map(str::trim)).collect();
-    let first = lines.iter().find(|(_, line)| !line.is_empty());
-    let is_molecular = first.is_some_and(|(_, line)| line.parse::<usize>().is_ok());
-    if is_molecular {
-        let start = lines.iter().position(|(_, line)| !line.is_empty());
-        let n: usize = first.map_or(0, |(_, line)| line.parse().unwrap_or(0));
-        let skipped = start.unwrap_or(0) + 2;
-        lines.drain(..skipped.min(lines.len()));
-        if lines.len() < n {
-            let found = lines.len();
-            return Err(fault(
-                path,
-                format!("line 1 announces {n} vertices, {found} lines follow the title"),
-            ));
-        }
-        lines.truncate(n);
-    }
-    let mut components: Vec<CurveComponent> = Vec::new();
-    let mut open = false;
-    for (line, row) in lines {
-        if row.starts_with('#') {
-            continue;
-        }
-        if row.is_empty() {
-            open = false;
-            continue;
-        }
-        let mut cells: Vec<&str> = row
-            .split(|c: char| c.is_whitespace() || c == ',')
-            .filter(|cell| !cell.is_empty())
-            .collect();
-        if is_molecular && cells.len() > 3 {
-            cells = cells[1..4].to_vec();
-        }
-        let &[x, y, z] = &cells[..] else {
-            let found = cells.len();
-            return Err(fault(
-                path,
-                format!("line {line}: {found} numbers instead of 3"),
-            ));
-        };
-        let vertex = V::new(
-            number(path, line, x)?,
-            number(path, line, y)?,
-            number(path, line, z)?,
-        );
-        match components.last_mut() {
-            Some(last) if open => last.vertices.push(vertex),
-            _ => components.push(CurveComponent {
-                vertices: vec![vertex],
-                closed: None,
-            }),
-        }
-        open = true;
-    }
-    Ok(components)
-}
-
-fn vect(path: &Path, text: &str) -> Result<Vec<CurveComponent>, KnotError> {
-    let mut words = (1..).zip(text.lines()).flat_map(|(line, row)| {
-        let row = row.split('#').next().unwrap_or("");
-        row.split_whitespace().map(move |word| (line, word))
-    });
-    if words.next().is_none_or(|(_, word)| word != "VECT") {
-        return Err(fault(path, "the first word must be VECT".to_owned()));
-    }
-    let mut next = |what: &str| {
-        words
-            .next()
-            .ok_or_else(|| fault(path, format!("the file ends where {what} should stand")))
-    };
-    let mut integer = |what: &str| -> Result<i64, KnotError> {
-        let (line, word) = next(what)?;
-        word.parse()
-            .map_err(|_| fault(path, format!("line {line}: `{word}` is not {what}")))
-    };
-    let n_components = integer("the number of components")?;
-    let n_vertices = integer("the number of vertices")?;
-    integer("the number of colours")?;
-    // A count beyond the text is an error below, not a reason to reserve memory.
-    let sizes = (0..n_components)
-        .map(|_| integer("the size of a component"))
-        .collect::<Result<Vec<i64>, _>>()?;
-    for _ in 0..n_components {
-        integer("the number of colours of a component")?;
-    }
-    let sum: i128 = sizes.iter().map(|n| i128::from(n.unsigned_abs())).sum();
-    if sum != i128::from(n_vertices) {
-        return Err(fault(
-            path,
-            format!("the components have {sum} vertices together, line 2 announces {n_vertices}"),
-        ));
-    }
-    let mut components = Vec::new();
-    for size in sizes {
-        let mut vertices = Vec::new();
-        for _ in 0..size.unsigned_abs() {
-            let mut x = V::zeros();
-            for k in 0..3 {
-                let (line, word) = next("a coordinate")?;
-                x[k] = number(path, line, word)?;
-            }
-            vertices.push(x);
-        }
-        components.push(CurveComponent {
-            vertices,
-            closed: Some(size < 0),
-        });
-    }
-    Ok(components)
+    Ok(CurveFile::parse(path, bytes.as_ref(), format, FrameChoice::Only)?.components)
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::closed_braid;
-
-    fn parse(text: &str, format: CurveFormat) -> Result<Vec<CurveComponent>, KnotError> {
-        parse_components(Path::new("curve"), text, format)
-    }
-
-    #[test]
-    fn curves_survive_every_format() {
-        let closed = closed_braid(&[1, 1, 1]).expect("a knot");
-        let open = Polyline::new(closed.vertices()[..40].to_vec(), false).expect("a chain");
-        let folder = std::env::temp_dir().join(format!("topo-knots-curves-{}", std::process::id()));
-        std::fs::create_dir_all(&folder).expect("folder");
-        for curve in [&closed, &open] {
-            for name in ["c.csv", "c.xyz", "c.vect", "c.VECT"] {
-                let path = folder.join(name);
-                write_curve(&path, curve).expect("written");
-                let found = read_curve(&path).expect("read");
-                assert_eq!(found.vertices, curve.vertices(), "{name}");
-                let told = name.to_ascii_lowercase().ends_with("vect");
-                assert_eq!(found.closed, told.then_some(curve.is_closed()));
-            }
-        }
-        std::fs::remove_dir_all(&folder).expect("removed");
-    }
-
-    #[test]
-    fn other_people_s_files_are_read() {
-        let vect = "VECT # a comment\n2 7 1\n-3 4\n1 0\n0 0 0  1 0 0\n0 1 0\n 5 5 5 6 5 5 6 6 5 6 6 6\n1 0 0 1\n";
-        let found = parse(vect, CurveFormat::Vect).expect("two components");
-        assert_eq!(found.len(), 2);
-        assert_eq!(
-            (found[0].closed, found[1].closed),
-            (Some(true), Some(false))
-        );
-        assert!(matches!(
-            only(Path::new("c"), found),
-            Err(KnotError::Link { n_components: 2 })
-        ));
-        let molecular = "4\na title\nC 0 0 0\nC 1 0 0\nC 1 1 0\nC 0 0 0\n";
-        let found = parse(molecular, CurveFormat::Xyz).expect("one component");
-        assert_eq!((found[0].vertices.len(), found[0].closed), (3, Some(true)));
-        let spaced = "# KnotPlot\n0 0 0\n1 0 0\n\n\n5, 5, 5\n6 6 6\n";
-        assert_eq!(parse(spaced, CurveFormat::Xyz).expect("two").len(), 2);
-        let columns = "s,z,y,x\n0,3,2,1\n1,6,5,4\n";
-        let found = parse(columns, CurveFormat::Csv).expect("one component");
-        assert_eq!(found[0].vertices[1], V::new(4.0, 5.0, 6.0));
-    }
-
-    #[test]
-    fn faults_are_named_with_their_lines() {
-        for (text, format, expected) in [
-            ("x,y\n0,0\n", CurveFormat::Csv, "columns x, y and z"),
-            (
-                "x,y,z\n0,0,0\n1,oops,0\n",
-                CurveFormat::Csv,
-                "line 3: `oops`",
-            ),
-            ("x,y,z\n0,0\n", CurveFormat::Csv, "line 2: 2 columns"),
-            ("0 0 0\n1 1\n", CurveFormat::Xyz, "line 2: 2 numbers"),
-            ("9\ntitle\nC 0 0 0\n", CurveFormat::Xyz, "announces 9"),
-            (
-                "0 0 0\n0 NaN 0\n",
-                CurveFormat::Xyz,
-                "vertex 1 is not finite",
-            ),
-            ("VEC\n", CurveFormat::Vect, "must be VECT"),
-            (
-                "VECT\n1 3 0\n-4\n0\n",
-                CurveFormat::Vect,
-                "4 vertices together",
-            ),
-            (
-                "VECT\n1 3 0\n-3\n0\n0 0 0\n1 x",
-                CurveFormat::Vect,
-                "line 6: `x`",
-            ),
-            (
-                "VECT\n9999999999 3 0\n-3\n0\n",
-                CurveFormat::Vect,
-                "file ends",
-            ),
-        ] {
-            let error = parse(text, format).expect_err(expected).to_string();
-            assert!(error.contains(expected), "{expected}: {error}");
-        }
-        assert!(matches!(
-            CurveFormat::of(Path::new("knot.obj")),
-            Err(KnotError::CurveFile { .. })
-        ));
-        let none = only(Path::new("c"), parse("", CurveFormat::Xyz).expect("empty"));
-        assert!(none.expect_err("empty").to_string().contains("no vertex"));
-    }
-}
+mod tests;

@@ -88,7 +88,7 @@ pub enum KnotError {
         problem: String,
     },
     /// A file could not be read or written.
-    #[error("{}: cannot {action}: {source}; check that the path exists and its permissions", path.display())]
+    #[error("{}: cannot {action}: {source}; {}", path.display(), io_remedy(.source))]
     Io {
         /// The file or folder.
         path: PathBuf,
@@ -182,6 +182,15 @@ pub enum KnotError {
     /// The curve is refused by the geometry.
     #[error(transparent)]
     Curve(#[from] topo_core::CurveError),
+}
+
+fn io_remedy(source: &std::io::Error) -> &'static str {
+    match source.kind() {
+        std::io::ErrorKind::NotFound => "check that the path exists",
+        std::io::ErrorKind::PermissionDenied => "check its permissions",
+        std::io::ErrorKind::InvalidData => "save it as UTF-8 text",
+        _ => "check the path, its permissions and the disk",
+    }
 }
 
 fn near_names(near: &[String]) -> String {

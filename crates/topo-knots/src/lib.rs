@@ -22,8 +22,8 @@ mod tighten;
 
 pub use braid::{closed_braid, n_components, parse_braid};
 pub use curve_file::{
-    CurveComponent, CurveFormat, curve_text, parse_components, read_components, read_curve,
-    write_curve,
+    CurveComponent, CurveFile, CurveFormat, CurveFrame, FrameChoice, curve_text, parse_components,
+    read_components, read_curve, write_curve,
 };
 pub use error::KnotError;
 pub use ideal::{METHOD_VERSION, ideal, is_kept};

@@ -336,7 +336,7 @@ fn is_toml(path: &Path) -> bool {
 }
 
 /// Number of letters to insert, delete or replace.
-fn edit_distance(a: &str, b: &str) -> usize {
+pub(crate) fn edit_distance(a: &str, b: &str) -> usize {
     let b: Vec<char> = b.chars().collect();
     let mut row: Vec<usize> = (0..=b.len()).collect();
     for (i, x) in a.chars().enumerate() {

@@ -2,6 +2,7 @@
 
 use clap::{Args, Subcommand, ValueEnum};
 use std::path::PathBuf;
+use topo_knots::{CurveFormat, FrameChoice, KnotError};
 
 /// Options of `knot`.
 #[derive(Debug, Args)]
@@ -27,7 +28,18 @@ pub enum KnotCommand {
     /// Name the knot that a curve in a file is tied as.
     #[command(after_help = "Examples:
   cargo xtask knot identify curve.vect
-  cargo xtask knot identify chain.xyz --open --closures 200")]
+  cargo xtask knot identify chain.xyz --open --closures 200
+  cargo xtask knot identify results/elastic/CASE/snapshots.csv --frame 3
+  cargo xtask knot identify trajectory.xyz --frame last --json
+  gunzip -c curve.xyz.gz | cargo xtask knot identify - --format xyz
+
+Files: x, y, z a line between blanks, commas or semicolons, or VECT. A header, also
+after #, names the columns: x y z, and where wanted component, frame or time, closed.
+A blank line or NaN NaN NaN starts another component. What is no coordinate is said or
+refused. A curve whose ends are farther apart than twice its longest edge is taken for
+open unless the file says otherwise.
+
+Exit code: 0 named for certain, 3 one of several or consistent with a name, 2 refused.")]
     Identify(IdentifyArgs),
     /// List the knots of the table.
     List,
@@ -90,7 +102,7 @@ pub struct TightenArgs {
 /// Options of `knot identify`.
 #[derive(Debug, Args)]
 pub struct IdentifyArgs {
-    /// The curve: .csv, .xyz or .vect.
+    /// The curve: .csv, .xyz or .vect; `-` for the standard input.
     pub file: PathBuf,
     /// Treat the curve as open, whatever the file says: report the types of many closures.
     #[arg(long, conflicts_with = "closed")]
@@ -101,6 +113,27 @@ pub struct IdentifyArgs {
     /// Closures of an open curve.
     #[arg(long, value_name = "N", default_value_t = 100)]
     pub closures: usize,
+    /// Which frame of a file with several: its number from 1, or `last`.
+    #[arg(long, value_name = "N", value_parser = frame, help = "Which frame of a file with several: its number from 1, or `last` [default: last]")]
+    pub frame: Option<FrameChoice>,
+    /// Format of the file, if its extension does not tell: csv, xyz or vect.
+    #[arg(long, value_name = "FORMAT", value_parser = format)]
+    pub format: Option<CurveFormat>,
+    /// Write what is found as JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
+fn frame(text: &str) -> Result<FrameChoice, String> {
+    match text.parse() {
+        _ if text == "last" => Ok(FrameChoice::Last),
+        Ok(number) if number > 0 => Ok(FrameChoice::Number(number)),
+        _ => Err("give a number from 1 or `last`".to_owned()),
+    }
+}
+
+fn format(text: &str) -> Result<CurveFormat, String> {
+    text.parse().map_err(|e: KnotError| e.to_string())
 }
 
 /// How fine a knot is tightened.

@@ -8,25 +8,18 @@ mod tighten;
 use crate::cli::{KnotArgs, KnotCommand};
 use crate::error::XtaskError;
 use std::path::Path;
+use std::process::ExitCode;
 use topo_knots::{KnotError, KnotTable};
 
-pub fn run(args: &KnotArgs) -> Result<(), XtaskError> {
+pub fn run(args: &KnotArgs) -> Result<ExitCode, XtaskError> {
     let table = table(args.knots.as_deref())?;
     match &args.command {
-        KnotCommand::Tighten(args) => tighten::run(args, &table),
-        KnotCommand::Identify(args) => {
-            print!("{}", identify::report(args, &table)?);
-            Ok(())
-        }
-        KnotCommand::List => {
-            print!("{}", show::list(&table));
-            Ok(())
-        }
-        KnotCommand::Show { name } => {
-            print!("{}", show::entry(&*table.get(name)?));
-            Ok(())
-        }
+        KnotCommand::Tighten(args) => tighten::run(args, &table)?,
+        KnotCommand::Identify(args) => return identify::run(args, &table),
+        KnotCommand::List => print!("{}", show::list(&table)),
+        KnotCommand::Show { name } => print!("{}", show::entry(&*table.get(name)?)),
     }
+    Ok(ExitCode::SUCCESS)
 }
 
 /// The built-in table with the knots of a folder.

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use serde::{Deserialize, Serialize};
 
 use super::reduce::{Ray, Reducer};
-use super::{Care, classify};
+use super::{Care, KnotType, classify};
 use crate::invariant::{fibonacci_directions, usable_vertices};
 use crate::{KnotError, KnotTable, V};
 
@@ -17,6 +17,8 @@ const FAR: f64 = 50.0;
 pub struct OpenKnotType {
     /// Label and share of each type met, most frequent first, then by label.
     pub distribution: Vec<(String, f64)>,
+    /// What was found for each entry of `distribution`, in the closure whose diagram had the most crossings.
+    pub types: Vec<KnotType>,
     /// Number of closures.
     pub n_closures: usize,
 }
@@ -75,33 +77,44 @@ pub fn identify_open(
         reducer.reduce(false, &rays);
     }
     let chain = std::mem::take(&mut reducer.x);
-    let mut counts: Vec<(String, usize)> = Vec::new();
+    let mut found: Vec<(String, KnotType, usize)> = Vec::new();
     for point in far {
-        let label = close(&chain, point, &mut reducer, table)?;
-        match counts.iter_mut().find(|(known, _)| *known == label) {
-            Some((_, count)) => *count += 1,
-            None => counts.push((label, 1)),
+        let kind = close(&chain, point, &mut reducer, table)?;
+        let label = kind.label();
+        match found.iter_mut().find(|(known, ..)| *known == label) {
+            Some((_, widest, count)) => {
+                *count += 1;
+                if kind.n_crossings > widest.n_crossings {
+                    *widest = kind;
+                }
+            }
+            None => found.push((label, kind, 1)),
         }
     }
-    counts.sort_by(|a, b| b.1.cmp(&a.1).then_with(|| a.0.cmp(&b.0)));
-    let share = |(label, count)| (label, count as f64 / n_closures as f64);
+    found.sort_by(|a, b| b.2.cmp(&a.2).then_with(|| a.0.cmp(&b.0)));
+    let share = |count| count as f64 / n_closures as f64;
+    let (distribution, types) = found
+        .into_iter()
+        .map(|(label, kind, count)| ((label, share(count)), kind))
+        .unzip();
     Ok(OpenKnotType {
-        distribution: counts.into_iter().map(share).collect(),
+        distribution,
+        types,
         n_closures,
     })
 }
 
-/// Label of the chain closed through one far point.
+/// Type of the chain closed through one far point.
 fn close(
     chain: &[V],
     point: V,
     reducer: &mut Reducer,
     table: &KnotTable,
-) -> Result<String, KnotError> {
+) -> Result<KnotType, KnotError> {
     // Not as a closed chain: ends that coincide must both stay, the far point lies between them.
     reducer.load(chain, false);
     reducer.x.push(point);
-    Ok(classify(reducer, table, Care::Name)?.label())
+    classify(reducer, table, Care::Name)
 }
 
 pub(super) fn far_points(vertices: &[V], n: usize, seed: u64) -> Vec<V> {
