@@ -144,13 +144,18 @@ impl Columns {
 pub(super) fn header_names(header: &str) -> Vec<String> {
     let mut cells = Vec::new();
     split(header, &mut cells);
-    cells.iter().map(|cell| name(cell)).collect()
+    // Between blanks a unit is a cell of its own.
+    let is_unit = |cell: &&&str| cell.starts_with(['[', '(']);
+    cells
+        .iter()
+        .filter(|cell| !is_unit(cell))
+        .map(|cell| name(cell))
+        .collect()
 }
 
 fn name(cell: &str) -> String {
     let end = cell.find(['[', '(']).unwrap_or(cell.len());
-    let name = if end == 0 { cell } else { &cell[..end] };
-    name.trim().to_ascii_lowercase()
+    cell[..end].trim().to_ascii_lowercase()
 }
 
 /// The names that the title of an extended XYZ file gives with `Properties=species:S:1:pos:R:3`.
