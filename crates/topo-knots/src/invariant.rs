@@ -1,6 +1,7 @@
 //! Knot invariants from coordinates: project, simplify the diagram, then polynomial, determinant and signature.
 
 mod alexander;
+mod coordinates;
 mod diagram;
 mod field;
 mod goeritz;
@@ -12,6 +13,7 @@ mod projection;
 use crate::identify::shortened;
 use crate::{KnotError, V};
 
+pub(crate) use coordinates::usable_vertices;
 pub(crate) use diagram::Diagram;
 #[cfg(test)]
 pub(crate) use diagram::Visit;
@@ -19,7 +21,7 @@ pub use jones::Jones;
 pub(crate) use kauffman::{kauffman, kauffman_of_name};
 #[cfg(test)]
 pub(crate) use projection::one_view;
-pub(crate) use projection::{fibonacci_directions, least_crossing, usable_vertices};
+pub(crate) use projection::{fibonacci_directions, least_crossing};
 
 /// Directions tried for the projection with the fewest crossings.
 const N_PROJECTIONS: usize = 30;

@@ -1,8 +1,9 @@
 //! All types of at most ten crossings: from braid words, from published planar diagrams, and whether their invariants differ.
 
+use super::known::Candidate;
 use super::*;
 use crate::invariant::Visit;
-use crate::name::is_amphichiral;
+use crate::name::{self, KnotName, is_amphichiral};
 use crate::{KnotEntry, closed_braid};
 
 static PLANAR_DIAGRAMS: &str = include_str!("../../data/pd.csv");
