@@ -7,6 +7,7 @@ mod tighten;
 
 use crate::cli::{KnotArgs, KnotCommand};
 use crate::error::XtaskError;
+use std::io::Write as _;
 use std::path::Path;
 use std::process::ExitCode;
 use topo_knots::{KnotError, KnotTable};
@@ -16,10 +17,15 @@ pub fn run(args: &KnotArgs) -> Result<ExitCode, XtaskError> {
     match &args.command {
         KnotCommand::Tighten(args) => tighten::run(args, &table)?,
         KnotCommand::Identify(args) => return identify::run(args, &table),
-        KnotCommand::List => print!("{}", show::list(&table)),
-        KnotCommand::Show { name } => print!("{}", show::entry(&*table.get(name)?)),
+        KnotCommand::List => print(&show::list(&table)),
+        KnotCommand::Show { name } => print(&show::entry(&*table.get(name)?)),
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// Writes to the terminal; a closed pipe (`| head`) is no fault.
+fn print(text: &str) {
+    let _ = std::io::stdout().write_all(text.as_bytes());
 }
 
 /// The built-in table with the knots of a folder.

@@ -20,12 +20,13 @@ const NOT_CERTAIN: u8 = 3;
 /// Names what the file holds, on the terminal or as JSON.
 pub(super) fn run(args: &IdentifyArgs, table: &KnotTable) -> Result<ExitCode, XtaskError> {
     let (report, text) = look(args, table)?;
-    if args.json {
+    let text = if args.json {
         let json = serde_json::to_string_pretty(&report);
-        println!("{}", json.map_err(|e| XtaskError::Step(e.to_string()))?);
+        json.map_err(|e| XtaskError::Step(e.to_string()))? + "\n"
     } else {
-        print!("{text}");
-    }
+        text
+    };
+    super::print(&text);
     Ok(exit_code(&report))
 }
 

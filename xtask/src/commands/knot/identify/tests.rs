@@ -110,12 +110,14 @@ fn a_repeated_first_vertex_closes_every_closure() {
 #[test]
 fn far_ends_are_said_to_be_open() {
     let folder = tempfile::tempdir().unwrap();
-    let chain: String = (0..30).map(|k| format!("{k} {} 0\n", k % 2)).collect();
+    // An arch, which the closing edge does not touch.
+    let vertex = |k: i32| format!("{k} {} {}\n", k % 2, f64::from(k * (29 - k)) / 10.0);
+    let chain: String = (0..30).map(vertex).collect();
     let mut args = args(write(folder.path(), "chain.xyz", &chain));
     let (json, text, _) = named(&args);
     assert_eq!(json["components"][0]["closed"], false);
     assert!(
-        text.contains("note: taken for open: the ends are 20.5"),
+        text.contains("note: taken for open: the ends are 9.250 times"),
         "{text}"
     );
     args.closed = true;
