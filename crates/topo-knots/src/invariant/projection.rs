@@ -26,7 +26,7 @@ const N_MORE_VIEWS: usize = 64;
 /// [`KnotError::Degenerate`] if the curve touches itself, or no view is in general position.
 ///
 /// # Validation
-/// `every_view_shows_the_same_knot`, `curves_that_touch_themselves_are_refused`.
+/// `every_view_gives_the_same_and_sums_multiply`, `curves_that_touch_themselves_are_refused`.
 pub(crate) fn least_crossing(
     vertices: &[V],
     n_views: usize,
