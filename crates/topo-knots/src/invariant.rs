@@ -115,19 +115,20 @@ impl Invariants {
         }
     }
 
-    /// The invariants of the connected sum of two knots: polynomials and determinants multiply, signatures add.
-    pub fn sum(&self, other: &Self) -> Self {
+    /// The invariants of the connected sum of two knots: polynomials and determinants multiply, signatures add; `None` beyond 64 bits.
+    pub fn sum(&self, other: &Self) -> Option<Self> {
         let mut alexander = vec![0; self.alexander.len() + other.alexander.len() - 1];
         for (i, a) in self.alexander.iter().enumerate() {
             for (j, b) in other.alexander.iter().enumerate() {
-                alexander[i + j] += a * b;
+                let product = i64::checked_mul(*a, *b)?;
+                alexander[i + j] = i64::checked_add(alexander[i + j], product)?;
             }
         }
-        Self {
+        Some(Self {
             alexander,
-            determinant: self.determinant * other.determinant,
-            signature: self.signature + other.signature,
-        }
+            determinant: self.determinant.checked_mul(other.determinant)?,
+            signature: self.signature.checked_add(other.signature)?,
+        })
     }
 
     /// The polynomial as text, lowest power first, as `1 -1 1`.

@@ -117,8 +117,8 @@ impl<'a> Search<'a> {
     fn compare(&mut self, knots: &[&KnotEntry]) {
         let found = self.found;
         let product = |sum: Invariants, k: &&KnotEntry| sum.sum(&k.invariants);
-        let plain = knots.iter().fold(Invariants::unknot(), product);
-        if plain.alexander != found.invariants.alexander {
+        let plain = knots.iter().try_fold(Invariants::unknot(), product);
+        if plain.is_none_or(|plain| plain.alexander != found.invariants.alexander) {
             return;
         }
         for hands in 0..1_u32 << knots.len() {

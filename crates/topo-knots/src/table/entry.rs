@@ -337,8 +337,6 @@ impl KnotEntry {
         is_amphichiral: &dyn Fn(&str) -> bool,
     ) -> Result<Self, KnotError> {
         let mut braid: Vec<i32> = Vec::new();
-        let mut invariants = Invariants::unknot();
-        let mut jones = Some(Jones::one());
         for factor in factors {
             if factor.braid.is_empty() {
                 return Err(KnotError::SumWithoutWord {
@@ -348,12 +346,18 @@ impl KnotEntry {
             }
             let shift = braid.iter().map(|g| g.abs()).max().unwrap_or(0);
             braid.extend(factor.braid.iter().map(|g| g + shift * g.signum()));
-            invariants = invariants.sum(&factor.invariants);
+        }
+        check_word(&braid)?;
+        let n_crossings = braid.len();
+        let mut invariants = Invariants::unknot();
+        let mut jones = Some(Jones::one());
+        for factor in factors {
+            let sum = invariants.sum(&factor.invariants);
+            invariants = sum.ok_or(KnotError::TooComplicated { n_crossings })?;
             jones = jones
                 .zip(factor.jones.as_ref())
                 .and_then(|(a, b)| a.product(b));
         }
-        check_word(&braid)?;
         let chirality = if name.mirror_with(is_amphichiral) == *name {
             Chirality::Amphichiral
         } else {

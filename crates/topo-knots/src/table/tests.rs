@@ -182,6 +182,12 @@ fn any_sum_and_any_prime_to_ten_crossings_is_found() {
         table.get(&long),
         Err(KnotError::GeneratorTooLarge { .. })
     ));
+    // a determinant of 3^25 fits into 64 bits, 121^10 does not
+    assert!(table.get(&["3_1"; 25].join("#")).is_ok());
+    assert!(matches!(
+        table.get(&["10_123"; 10].join("#")),
+        Err(KnotError::TooComplicated { n_crossings: 100 })
+    ));
     let mut table = table;
     let mut curve = table.get("3_1").expect("known").into_owned();
     (curve.name, curve.braid) = ("curve".to_owned(), Vec::new());
