@@ -80,8 +80,8 @@ impl Measurement {
     }
 }
 
-/// The times that are compared, that which wishes are about last. The late time of a rod hangs on ties of contacts: alone, it
-/// agrees by chance in one case of ten.
+/// The times that are compared, that which wishes are about last. The late time of a rod hangs on ties of contacts, and two
+/// resolutions may agree in it by chance.
 fn times(system: System) -> &'static [&'static str] {
     match system {
         System::Rod => &["t50", "t99"],

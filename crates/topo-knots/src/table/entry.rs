@@ -330,7 +330,8 @@ impl KnotEntry {
     /// The entry of a sum: words side by side, and what follows from the factors; `is_amphichiral` as for names.
     ///
     /// # Errors
-    /// [`KnotError::SumWithoutWord`] if a factor has no braid word, and those of [`closed_braid`] for a word of too many strands.
+    /// [`KnotError::SumWithoutWord`] if a factor has no braid word, and those of [`closed_braid`] for a word of too many strands;
+    /// [`KnotError::TooComplicated`] for invariants beyond 64 bits.
     pub(super) fn sum(
         name: &KnotName,
         factors: &[Cow<'_, KnotEntry>],
