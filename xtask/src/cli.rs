@@ -129,6 +129,9 @@ pub struct FiguresArgs {
     /// Draw the tight knots of `knots-table` as thin tubes with their struts.
     #[arg(long)]
     pub struts: bool,
+    /// Folder with knots of your own, one TOML file each, shown in `knots-table` besides the built-in ones.
+    #[arg(long, value_name = "DIR")]
+    pub knots: Option<PathBuf>,
     #[command(flatten)]
     pub work: WorkArgs,
 }
@@ -172,6 +175,9 @@ pub struct RunArgs {
     /// Seconds between checkpoints inside a nematic case.
     #[arg(long, value_name = "SECONDS", default_value_t = 25.0)]
     pub checkpoint: f64,
+    /// Folder with knots of your own, one TOML file each, besides the built-in ones.
+    #[arg(long, value_name = "DIR")]
+    pub knots: Option<PathBuf>,
     #[command(flatten)]
     pub work: WorkArgs,
 }

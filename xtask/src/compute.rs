@@ -1,21 +1,22 @@
 //! Where commands meet the physics: the tables behind figures, and a user's own scene.
 
 mod by_wish;
+mod elastic;
 mod estimate;
 mod nematic;
+mod report;
 
 use crate::error::XtaskError;
 use crate::figures::Quality;
 use crate::interrupt;
 use crate::progress::Progress;
 use crate::provenance::Provenance;
+pub use report::Failures;
 use std::path::Path;
-use std::sync::OnceLock;
 use std::time::Instant;
 use topo_analysis::{
-    ACCURACY_CASES, AnalysisError, Cuts, ElasticScene, Estimate, Event, NematicScene, Preset,
-    Scene, Shard, SweepReport, SweepSettings, Wish, errors_of_rods, measure_accuracy, quantile,
-    run_sweep, tight_shapes, with_jobs, write_knots, write_table,
+    AnalysisError, ElasticScene, Event, NematicScene, Preset, Scene, Shard, SweepSettings, Wish,
+    tight_shapes, with_jobs, write_knots,
 };
 use topo_core::Interrupt;
 use topo_knots::{KnotTable, TightenSettings};
@@ -41,16 +42,19 @@ pub struct Order<'a> {
     pub nematic: bool,
     /// Whether the table of knots is needed.
     pub knots: bool,
+    /// The knots there are, the user's own among them.
+    pub table: &'a KnotTable,
 }
 
-/// Computes the tables, reusing finished runs, and notes presets, seeds and times.
+/// Computes the tables, reusing finished runs, and notes presets, seeds and times; gives the cases that failed.
 pub fn tables(
     order: &Order,
     stop: &Interrupt,
     provenance: &mut Provenance,
-) -> Result<(), XtaskError> {
+) -> Result<Failures, XtaskError> {
     let scene = ElasticScene::published(preset(order.quality));
-    let table = KnotTable::builtin();
+    let table = order.table;
+    let mut failures = Failures::default();
     provenance.presets.insert(
         "Tolerance".to_owned(),
         format!("{} h", scene.accuracy.tolerance),
@@ -76,8 +80,8 @@ pub fn tables(
     estimate::tell(&estimate::of_order(order, &settings)?);
     if order.knots && !order.as_is {
         let start = Instant::now();
-        let names = knots_of(&scene, &table)?;
-        let more = more_knots(order.quality, &names, &table);
+        let names = knots_of(&scene, table)?;
+        let more = more_knots(order.quality, &names, table);
         let progress = Progress::start("knots", names.len() + more.len());
         let told = |event: Event<'_>| {
             if let Event::Knot { name, .. } = event {
@@ -86,22 +90,23 @@ pub fn tables(
         };
         let shapes = with_jobs(order.jobs, || {
             let mut shapes =
-                tight_shapes(&names, &table, &scene.tighten, order.results, stop, &told)?;
+                tight_shapes(&names, table, &scene.tighten, order.results, stop, &told)?;
             let standard = TightenSettings::standard();
-            let more = tight_shapes(&more, &table, &standard, order.results, stop, &told)?;
+            let more = tight_shapes(&more, table, &standard, order.results, stop, &told)?;
             shapes.extend(more);
             Ok::<_, AnalysisError>(shapes)
         })??;
         progress.finish();
         interrupt::check(stop)?;
-        write_knots(&shapes, &table, order.results)?;
+        write_knots(&shapes, table, order.results)?;
         provenance
             .wall_seconds
             .insert("knots".to_owned(), start.elapsed().as_secs_f64());
     }
     if order.elastic {
         let start = Instant::now();
-        let report = sweep(&scene, &table, &settings)?;
+        let report = elastic::sweep(&scene, table, &settings)?;
+        failures.add(&report.failed, &scene.results(order.results));
         provenance.estimated("elastic sweep", &report.estimate, report.wall_seconds);
         provenance
             .wall_seconds
@@ -110,7 +115,8 @@ pub fn tables(
         provenance.presets.insert("Elastic runs".to_owned(), runs);
         let start = Instant::now();
         for variant in scene.variants() {
-            sweep(&variant.scene, &table, &settings)?;
+            let report = elastic::sweep(&variant.scene, table, &settings)?;
+            failures.add(&report.failed, &variant.scene.results(order.results));
         }
         provenance
             .wall_seconds
@@ -120,6 +126,7 @@ pub fn tables(
         let start = Instant::now();
         let scene = NematicScene::published(preset(order.quality));
         let report = nematic::sweep(&scene, &settings)?;
+        failures.add(&report.failed, &scene.results(order.results));
         provenance.estimated("nematic sweep", &report.estimate, report.wall_seconds);
         let radius = format!("radius {} ξ_N", scene.nematic.radius);
         provenance.presets.insert("Colloid".to_owned(), radius);
@@ -129,7 +136,7 @@ pub fn tables(
             .wall_seconds
             .insert("nematic sweep".to_owned(), start.elapsed().as_secs_f64());
     }
-    Ok(())
+    Ok(failures)
 }
 
 /// Knots of a scene, each once.
@@ -139,83 +146,18 @@ fn knots_of(scene: &ElasticScene, table: &KnotTable) -> Result<Vec<String>, Xtas
     Ok(names)
 }
 
-/// Beyond draft the table of knots goes on to eight crossings, at the resolution of the standard preset.
+/// Beyond draft the table of knots goes on to eight crossings, at the resolution of the standard preset, and always to the user's
+/// own knots.
 fn more_knots(quality: Quality, names: &[String], table: &KnotTable) -> Vec<String> {
-    if quality == Quality::Draft {
-        return Vec::new();
-    }
-    let primes = table.primes_up_to(8).map(|k| k.name.clone());
-    primes.filter(|k| !names.contains(k)).collect()
-}
-
-/// Compares the discharge times of a preset with much finer runs of the same cuts, prints and writes the table.
-pub fn accuracy(preset: Preset, settings: &SweepSettings) -> Result<(), XtaskError> {
-    let scene = ElasticScene::published(preset);
-    let table = KnotTable::builtin();
-    topo_analysis::writable(&settings.out)?;
-    let mut names: Vec<String> = Vec::new();
-    for (knot, _) in ACCURACY_CASES {
-        if names.iter().all(|name| name != knot) {
-            names.push(knot.to_owned());
-        }
-    }
-    let stop = &settings.interrupt;
-    let progress = Progress::start("accuracy", names.len() + ACCURACY_CASES.len());
-    let told = |event: Event<'_>| match event {
-        Event::Knot { name, .. } | Event::Case { name, .. } => progress.done(name),
-        _ => {}
-    };
-    let rows = with_jobs(settings.jobs, || {
-        let shapes = tight_shapes(&names, &table, &scene.tighten, &settings.out, stop, &told)?;
-        measure_accuracy(&scene, &ACCURACY_CASES, &table, &shapes, stop, &told)
-    })??;
-    progress.finish();
-    interrupt::check(stop)?;
-    let path = settings.out.join("accuracy.csv");
-    write_table(&path, &rows)?;
-    println!(
-        "knot    theta'h     cut     t50   error      t99   error  E/E_ref   CPU s  CPU s of reference"
-    );
-    for r in &rows {
-        let cell = |t: Option<f64>| t.map_or_else(|| "      -".to_owned(), |t| format!("{t:7.3}"));
-        let error =
-            |e: Option<f64>| e.map_or_else(|| "      -".to_owned(), |e| format!("{e:+6.2}%"));
-        println!(
-            "{:6} {:+8.2} {:7.4} {} {}  {} {} {:8.4} {:7.2} {:7.2}",
-            r.knot,
-            r.twist,
-            r.cut,
-            cell(r.t50),
-            error(r.t50_error_percent),
-            cell(r.t99),
-            error(r.t99_error_percent),
-            r.energy_ratio,
-            r.cpu_seconds,
-            r.cpu_seconds_reference
-        );
-    }
-    for (name, errors) in [
-        (
-            "t50",
-            rows.iter()
-                .filter_map(|r| r.t50_error_percent)
-                .collect::<Vec<_>>(),
-        ),
-        (
-            "t99",
-            rows.iter().filter_map(|r| r.t99_error_percent).collect(),
-        ),
-    ] {
-        let sizes = || errors.iter().map(|e| e.abs());
-        if let (Some(median), Some(most)) = (quantile(sizes(), 0.5), quantile(sizes(), 0.9)) {
-            println!(
-                "{name}: error of {} cases, median {median:.2} %, 90th percentile {most:.2} %",
-                errors.len()
-            );
-        }
-    }
-    println!("written to {}", path.display());
-    Ok(())
+    let builtin = KnotTable::builtin();
+    let n_crossings = if quality == Quality::Draft { 0 } else { 8 };
+    let primes = table.primes_up_to(n_crossings);
+    let own = table.iter().filter(|k| builtin.get(&k.name).is_err());
+    let all = primes.chain(own).map(|k| k.name.clone());
+    let mut more: Vec<String> = all.filter(|k| !names.contains(k)).collect();
+    more.sort();
+    more.dedup();
+    more
 }
 
 /// Runs a user's scene and prints its table.
@@ -225,172 +167,50 @@ pub fn scene(
     file: &Path,
     cuts: Option<&str>,
     wish: Option<Wish>,
+    knots: Option<&Path>,
     settings: &SweepSettings,
 ) -> Result<(), XtaskError> {
+    let refused = |key, value: String, remedy: &str| XtaskError::Argument {
+        key,
+        value,
+        remedy: remedy.to_owned(),
+    };
     match Scene::read(file)? {
+        Scene::Elastic(_) if settings.keep_fields => Err(refused(
+            "--fields",
+            "given".to_owned(),
+            "a fibre has no field to keep; leave it out",
+        )),
         Scene::Elastic(mut scene) => {
             scene.wish = wish.or(scene.wish);
-            elastic_scene(*scene, cuts, settings)
+            elastic::scene(*scene, cuts, &knot_table(knots)?, settings)
         }
+        Scene::Nematic(_) if knots.is_some() => Err(refused(
+            "--knots",
+            "given".to_owned(),
+            "a colloid has no knot; leave it out",
+        )),
         Scene::Nematic(mut scene) => match cuts {
             None => {
                 scene.wish = wish.or(scene.wish);
                 nematic::scene(&scene, settings)
             }
-            Some(text) => Err(XtaskError::Argument {
-                key: "--cuts",
-                value: text.to_owned(),
-                remedy: "a nematic scene has nothing to cut; leave it out".to_owned(),
-            }),
+            Some(text) => Err(refused(
+                "--cuts",
+                text.to_owned(),
+                "a nematic scene has nothing to cut; leave it out",
+            )),
         },
     }
 }
 
-fn elastic_scene(
-    mut scene: ElasticScene,
-    cuts: Option<&str>,
-    settings: &SweepSettings,
-) -> Result<(), XtaskError> {
-    if let Some(text) = cuts {
-        scene.cuts = Cuts::try_from(text.to_owned()).map_err(|remedy| XtaskError::Argument {
-            key: "--cuts",
-            value: text.to_owned(),
-            remedy,
-        })?;
-    }
+/// The built-in knots with those of a folder.
+pub fn knot_table(folder: Option<&Path>) -> Result<KnotTable, XtaskError> {
     let table = KnotTable::builtin();
-    let (scene, grant) = scene.granted(&table, settings.jobs)?;
-    if let Some(grant) = &grant {
-        by_wish::tell_grant(grant, "edges");
-    }
-    tell_estimate(&topo_analysis::estimate_sweep(&scene, &table, settings)?);
-    let report = sweep(&scene, &table, settings)?;
-    println!("knot    theta'h     cut    E/E0      Wr     t50     t90     t95     t99  untied");
-    let cell = |t: Option<f64>| t.map_or_else(|| format!("{:>7}", "-"), |t| format!("{t:7.3}"));
-    for r in &report.rows {
-        println!(
-            "{:6} {:+8.3} {:7.4} {:7.4} {:+7.3} {} {} {} {} {}",
-            r.knot,
-            r.twist,
-            r.cut,
-            r.energy,
-            r.writhe,
-            cell(r.t50),
-            cell(r.t90),
-            cell(r.t95),
-            cell(r.t99),
-            cell(r.t_untie)
-        );
-        for warning in r.warnings.split(';').filter(|w| !w.is_empty()) {
-            println!("       warning: {warning}");
-        }
-    }
-    tell_taken(&report.estimate, report.wall_seconds);
-    if let Some(grant) = &grant {
-        let check = scene.check_of(grant, &report.rows);
-        let coarser = sweep(&check, &table, settings)?;
-        let rows = errors_of_rods(grant, &report.rows, &coarser.rows);
-        by_wish::tell_errors(grant, &rows, &scene.results(&settings.out))?;
-    }
-    println!("written to {}", scene.results(&settings.out).display());
-    Ok(())
-}
-
-/// Tells on the terminal what the cases left will take.
-fn tell_estimate(estimate: &Estimate) {
-    if estimate.n_cases > 0 {
-        eprintln!("estimate: {}", estimate::text(estimate));
-    }
-}
-
-/// Tells what they took.
-fn tell_taken(estimate: &Estimate, seconds: f64) {
-    if estimate.n_cases > 0 {
-        println!(
-            "{} cases in {}; estimated {}",
-            estimate.n_cases,
-            estimate::duration(seconds),
-            estimate::duration(estimate.wall_seconds)
-        );
-    }
-}
-
-fn sweep(
-    scene: &ElasticScene,
-    table: &KnotTable,
-    settings: &SweepSettings,
-) -> Result<SweepReport, XtaskError> {
-    let teller = Teller::new("elastic");
-    let report = run_sweep(scene, table, settings, &|event| teller.tell(event))?;
-    teller.finish(report.interrupted)?;
-    Ok(report)
-}
-
-/// Tells the events of a sweep on the terminal.
-struct Teller {
-    label: &'static str,
-    progress: OnceLock<Progress>,
-}
-
-impl Teller {
-    fn new(label: &'static str) -> Self {
-        Self {
-            label,
-            progress: OnceLock::new(),
-        }
-    }
-
-    fn tell(&self, event: Event<'_>) {
-        let progress = self.progress.get();
-        match (event, progress) {
-            (
-                Event::Begin {
-                    n_cases, n_reused, ..
-                },
-                _,
-            ) => {
-                if n_reused > 0 {
-                    eprintln!("{n_reused} of {n_cases} cases are finished already");
-                }
-                self.progress
-                    .get_or_init(|| Progress::start(self.label, n_cases - n_reused));
-            }
-            (Event::Replaced { names, reason }, _) => {
-                let shown = names.iter().take(3).cloned().collect::<Vec<_>>().join(", ");
-                let more = if names.len() > 3 { ", ..." } else { "" };
-                let text = format!(
-                    "warning: computed again: {} of the earlier cases ({shown}{more}): {reason}",
-                    names.len()
-                );
-                match progress {
-                    Some(progress) => progress.note(&text),
-                    None => eprintln!("{text}"),
-                }
-            }
-            (Event::Working { name, what }, Some(progress)) => {
-                progress.working(&format!("{name}: {what}"));
-            }
-            (Event::Case { name, warnings, .. }, Some(progress)) => {
-                progress.done(name);
-                if !warnings.is_empty() {
-                    progress.note(&format!("warning: {name}: {warnings}"));
-                }
-            }
-            _ => {}
-        }
-    }
-
-    /// Ends the telling; a sweep that was interrupted becomes that error.
-    fn finish(self, interrupted: bool) -> Result<(), XtaskError> {
-        if let Some(progress) = self.progress.into_inner() {
-            progress.finish();
-        }
-        if interrupted {
-            Err(XtaskError::Interrupted)
-        } else {
-            Ok(())
-        }
-    }
+    Ok(match folder {
+        Some(folder) => table.with_folder(folder)?,
+        None => table,
+    })
 }
 
 pub fn preset(quality: Quality) -> Preset {

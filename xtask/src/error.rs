@@ -53,17 +53,25 @@ pub enum XtaskError {
     /// A tool that a command runs failed.
     #[error("{0}")]
     Step(String),
+    /// Cases of a sweep failed; the others are done.
+    #[error("{n} of the cases failed: {}", path.display())]
+    Failed {
+        /// How many.
+        n: usize,
+        /// Table that says which and why.
+        path: PathBuf,
+    },
     /// Ctrl-C.
     #[error("interrupted; finished cases are kept, the same command goes on from them")]
     Interrupted,
 }
 
 impl XtaskError {
-    /// Exit code of the process: 2 for what the user can mend, 130 after Ctrl-C, else 1.
+    /// Exit code of the process: 1 if a case or a step failed, 2 for what the user can mend, 130 after Ctrl-C.
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Interrupted => 130,
-            Self::Drawing { .. } | Self::Step(_) => 1,
+            Self::Drawing { .. } | Self::Step(_) | Self::Failed { .. } => 1,
             _ => 2,
         }
     }

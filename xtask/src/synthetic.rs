@@ -106,7 +106,6 @@ fn cut(knot: &str, k: usize, twist: f64, c: usize) -> Cut {
         bend,
         twist_energy,
         stretch: 0.001,
-        energy_other_image: None,
         writhe: 3.4 + 0.8 * twist,
         total_twist: 8.0 * twist,
         t50: Some(t99 / 12.0),
@@ -123,7 +122,7 @@ fn cut(knot: &str, k: usize, twist: f64, c: usize) -> Cut {
         steps: 800,
         rejected: 12,
         cpu_seconds: 0.5,
-        warnings: String::new(),
+        ..Cut::default()
     }
 }
 

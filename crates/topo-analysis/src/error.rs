@@ -63,6 +63,14 @@ pub enum AnalysisError {
     /// A knot is unknown, or its shape cannot be had.
     #[error(transparent)]
     Knot(#[from] topo_knots::KnotError),
+    /// A knot has no start shape.
+    #[error("{knot} has no tight shape: {reason}")]
+    Shape {
+        /// The knot.
+        knot: String,
+        /// Why.
+        reason: String,
+    },
     /// A file cannot be written or read.
     #[error(transparent)]
     File(#[from] topo_core::FileError),
@@ -84,6 +92,16 @@ pub enum AnalysisError {
         /// Why.
         source: std::io::Error,
     },
+    /// A folder holds the results of another scene.
+    #[error(
+        "{folder} holds the results of another scene: {why}; name another folder with --out, or delete this one"
+    )]
+    OtherScene {
+        /// The folder.
+        folder: PathBuf,
+        /// What differs.
+        why: String,
+    },
     /// The threads cannot be started.
     #[error("cannot start {jobs} jobs: {reason}")]
     Jobs {
@@ -92,4 +110,15 @@ pub enum AnalysisError {
         /// Why.
         reason: String,
     },
+}
+
+impl AnalysisError {
+    /// Whether a case is refused for what it is, so that others can go on.
+    pub(crate) fn is_of_one_case(&self) -> bool {
+        match self {
+            Self::Rod { .. } | Self::Knot(_) | Self::Shape { .. } => true,
+            Self::Nematic { source, .. } => !matches!(source, topo_nematic::NematicError::File(_)),
+            _ => false,
+        }
+    }
 }

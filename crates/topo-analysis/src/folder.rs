@@ -30,6 +30,39 @@ pub fn writable(folder: &Path) -> Result<(), AnalysisError> {
     tempfile::tempfile_in(folder).map(drop).map_err(wrong)
 }
 
+/// Removes a file, if it is there.
+pub(crate) fn forget_file(path: &Path) -> Result<(), AnalysisError> {
+    match std::fs::remove_file(path) {
+        Err(source) if source.kind() != std::io::ErrorKind::NotFound => {
+            Err(AnalysisError::Output {
+                path: path.to_owned(),
+                source,
+            })
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Removes checkpoints of other settings, or all when `mark` is empty.
+pub(crate) fn forget_checkpoints(folder: &Path, mark: &str) -> Result<(), AnalysisError> {
+    let wrong = |source| AnalysisError::Output {
+        path: folder.to_owned(),
+        source,
+    };
+    let Ok(entries) = std::fs::read_dir(folder) else {
+        return Ok(());
+    };
+    for entry in entries {
+        let entry = entry.map_err(wrong)?;
+        let name = entry.file_name().to_string_lossy().into_owned();
+        let ours = !mark.is_empty() && name.ends_with(&format!("-{mark}.checkpoint"));
+        if name.ends_with(".checkpoint") && !ours {
+            std::fs::remove_file(entry.path()).map_err(wrong)?;
+        }
+    }
+    Ok(())
+}
+
 /// What tells whether a finished case can be used.
 #[derive(Deserialize)]
 struct CaseMark {
@@ -45,11 +78,41 @@ struct Versions {
     results: u32,
 }
 
-/// The rows of a finished case.
-#[derive(Deserialize)]
+/// What a case came to.
+#[derive(Debug, Clone, Deserialize)]
 #[serde(bound = "T: DeserializeOwned")]
-struct CaseSummary<T> {
-    rows: Vec<T>,
+pub(crate) struct Outcome<T> {
+    /// Its rows of the table.
+    pub rows: Vec<T>,
+    /// Why it did not come to its end.
+    #[serde(default)]
+    pub failure: Option<String>,
+}
+
+/// What lies in the folder of a case, whoever computed it.
+#[derive(Debug)]
+pub(crate) enum Left {
+    /// A finished case.
+    Case {
+        /// Its identity.
+        fingerprint: String,
+        /// Version of its results.
+        results: Option<u32>,
+    },
+    /// A `run.json` that is none.
+    Damaged,
+}
+
+/// What a folder holds of a finished case; `None` without its mark.
+pub(crate) fn left_of(folder: &Path) -> Option<Left> {
+    let text = std::fs::read_to_string(folder.join("run.json")).ok()?;
+    Some(match serde_json::from_str::<CaseMark>(&text) {
+        Ok(mark) => Left::Case {
+            fingerprint: mark.fingerprint,
+            results: mark.versions.map(|v| v.results),
+        },
+        Err(_) => Left::Damaged,
+    })
 }
 
 /// Short hash of everything that the numbers of a case depend on.
@@ -74,8 +137,8 @@ pub(crate) fn digests(folder: &Path, names: &[&str]) -> BTreeMap<String, String>
 pub(crate) enum Earlier<T> {
     /// Nothing, or nothing that is finished.
     None,
-    /// Its rows, of the same settings and version.
-    Finished(Vec<T>),
+    /// What it came to, with the same settings and version.
+    Finished(Outcome<T>),
     /// Something that cannot be used, and why.
     Unusable(&'static str),
 }
@@ -94,10 +157,10 @@ impl<T> Earlier<T> {
         }
     }
 
-    /// The rows of a finished case.
-    pub(crate) fn rows(self) -> Option<Vec<T>> {
+    /// What a finished case came to.
+    pub(crate) fn outcome(self) -> Option<Outcome<T>> {
         match self {
-            Self::Finished(rows) => Some(rows),
+            Self::Finished(outcome) => Some(outcome),
             _ => None,
         }
     }
@@ -136,8 +199,8 @@ pub(crate) fn finished<T: DeserializeOwned>(
     if !mark.files.iter().all(sound) {
         return Earlier::Unusable(DAMAGED_FILE);
     }
-    match serde_json::from_str::<CaseSummary<T>>(&text) {
-        Ok(summary) if !summary.rows.is_empty() => Earlier::Finished(summary.rows),
+    match serde_json::from_str::<Outcome<T>>(&text) {
+        Ok(outcome) if !outcome.rows.is_empty() => Earlier::Finished(outcome),
         Ok(_) => Earlier::Unusable(NO_ROWS),
         Err(_) => Earlier::Unusable(CORRUPT),
     }

@@ -17,6 +17,7 @@ mod progress;
 mod scene;
 mod stability;
 mod statistics;
+mod sweep;
 mod system;
 mod table;
 mod terms;
@@ -27,9 +28,9 @@ mod wish;
 
 pub use cost::Estimate;
 pub use elastic::{
-    ACCURACY_CASES, AccuracyRow, Cuts, ElasticCase, ElasticScene, Ensemble, NEAR_TIE, Names,
-    Numbers, Preset, Purpose, RESULTS_VERSION, Regime, Resonance, ShapeFrame, SweepReport, Variant,
-    crossover, discharge_frames, ensembles, estimate_sweep, measure_accuracy, perturbed,
+    ACCURACY_CASES, AccuracyRow, Cuts, ElasticCase, ElasticReport, ElasticScene, Ensemble,
+    NEAR_TIE, Names, Numbers, Preset, Purpose, RESULTS_VERSION, Regime, Resonance, ShapeFrame,
+    Variant, crossover, discharge_frames, ensembles, estimate_sweep, measure_accuracy, perturbed,
     reference_scene, regime, resonances, run_sweep,
 };
 pub use error::AnalysisError;
@@ -45,6 +46,7 @@ pub use progress::{Event, Shard, SweepSettings, with_jobs};
 pub use scene::Scene;
 pub use stability::{StabilityRow, n_extremes, stability};
 pub use statistics::{Spread, median, quantile, standard_deviation};
+pub use sweep::{FailedCase, SweepReport};
 pub use system::{Effort, System};
 pub use table::{KnotRow, SweepRow, parse_table, read_table, table_bytes, write_table};
 pub use terms::{TermCost, term_costs};

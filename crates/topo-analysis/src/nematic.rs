@@ -5,6 +5,7 @@ mod field;
 mod file;
 mod frames;
 mod late;
+mod name;
 mod onset;
 mod resonance;
 mod scene;

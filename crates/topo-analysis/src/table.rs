@@ -22,6 +22,33 @@ pub struct SweepRow {
     pub reading: String,
     /// Edges of the rod.
     pub edges: usize,
+    /// L/h.
+    #[serde(default)]
+    pub slenderness: f64,
+    /// Ratio α of twist to bending stiffness.
+    #[serde(default)]
+    pub twist_ratio: f64,
+    /// Stretch stiffness γ = E/E_b.
+    #[serde(default)]
+    pub stretch_ratio: f64,
+    /// Stiffness k_c of the contact; empty without contact.
+    #[serde(default)]
+    pub contact_stiffness: Option<f64>,
+    /// η_f/η; empty without friction.
+    #[serde(default)]
+    pub friction_ratio: Option<f64>,
+    /// Where friction reaches: as the reading says, contact, or a multiple of the contact diameter; empty without friction.
+    #[serde(default)]
+    pub friction_range: Option<String>,
+    /// Random perturbation of the start curve, in h.
+    #[serde(default)]
+    pub imperfection: f64,
+    /// Its seed, and that of the closures.
+    #[serde(default)]
+    pub seed: u64,
+    /// Local error aimed at, in h.
+    #[serde(default)]
+    pub tolerance: f64,
     /// Elastic energy after charging.
     pub energy: f64,
     /// Its bending part.
@@ -194,7 +221,7 @@ mod tests {
         let text = std::fs::read_to_string(&path).unwrap();
         assert_eq!(
             text.lines().next().unwrap(),
-            "case,knot,twist,cut,reading,edges,energy,bend,twist_energy,stretch,energy_other_image,writhe,total_twist,t50,t90,t95,t99,t50_after_cut,t90_after_cut,t95_after_cut,t99_after_cut,t_untie,link_drift,min_distance_over_contact,steps,rejected,cpu_seconds,warnings"
+            "case,knot,twist,cut,reading,edges,slenderness,twist_ratio,stretch_ratio,contact_stiffness,friction_ratio,friction_range,imperfection,seed,tolerance,energy,bend,twist_energy,stretch,energy_other_image,writhe,total_twist,t50,t90,t95,t99,t50_after_cut,t90_after_cut,t95_after_cut,t99_after_cut,t_untie,link_drift,min_distance_over_contact,steps,rejected,cpu_seconds,warnings"
         );
         let path = folder.path().join("table.csv");
         write_table(&path, &[KnotRow::default()]).unwrap();

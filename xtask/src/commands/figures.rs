@@ -20,6 +20,7 @@ pub fn run(args: &FiguresArgs) -> Result<(), XtaskError> {
     let results = args.work.out.as_path();
     let mut record = Provenance::collect(&workspace(), args.quality);
 
+    let table = compute::knot_table(args.knots.as_deref())?;
     let order = compute::Order {
         results,
         quality: args.quality,
@@ -30,14 +31,15 @@ pub fn run(args: &FiguresArgs) -> Result<(), XtaskError> {
         elastic: chosen.iter().any(|f| f.table.starts_with("elastic/")),
         nematic: chosen.iter().any(|f| f.table.starts_with("nematic/")),
         knots: chosen.iter().any(|f| f.table.starts_with("knots/")),
+        table: &table,
     };
-    compute::tables(&order, &interrupt, &mut record)?;
+    let failures = compute::tables(&order, &interrupt, &mut record)?;
     if let Some(shard) = args.shard {
         println!(
             "part {shard} is computed; put the case folders of all parts below one folder and run \
              the command without --shard to draw"
         );
-        return Ok(());
+        return failures.into_result();
     }
 
     let context = Context {
@@ -125,5 +127,5 @@ pub fn run(args: &FiguresArgs) -> Result<(), XtaskError> {
         println!("{}: {}", d.figure.name, d.finding);
     }
     println!("gallery: {}", results.join("index.html").display());
-    Ok(())
+    failures.into_result()
 }

@@ -6,14 +6,14 @@ mod table;
 mod tighten;
 
 use crate::cli::{KnotArgs, KnotCommand};
+use crate::compute::knot_table;
 use crate::error::XtaskError;
 use std::io::Write as _;
-use std::path::Path;
 use std::process::ExitCode;
-use topo_knots::{KnotError, KnotTable};
+use topo_knots::KnotError;
 
 pub fn run(args: &KnotArgs) -> Result<ExitCode, XtaskError> {
-    let table = table(args.knots.as_deref())?;
+    let table = knot_table(args.knots.as_deref())?;
     match &args.command {
         KnotCommand::Tighten(args) => tighten::run(args, &table)?,
         KnotCommand::Identify(args) => return identify::run(args, &table),
@@ -26,15 +26,6 @@ pub fn run(args: &KnotArgs) -> Result<ExitCode, XtaskError> {
 /// Writes to the terminal; a closed pipe (`| head`) is no fault.
 fn print(text: &str) {
     let _ = std::io::stdout().write_all(text.as_bytes());
-}
-
-/// The built-in table with the knots of a folder.
-fn table(folder: Option<&Path>) -> Result<KnotTable, XtaskError> {
-    let table = KnotTable::builtin();
-    Ok(match folder {
-        Some(folder) => table.with_folder(folder)?,
-        None => table,
-    })
 }
 
 impl From<KnotError> for XtaskError {

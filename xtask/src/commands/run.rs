@@ -19,7 +19,13 @@ pub fn run(args: &RunArgs) -> Result<(), XtaskError> {
         keep_fields: args.fields,
         ..super::settings(&args.work)?
     };
-    compute::scene(&args.scene, args.cuts.as_deref(), wish(args)?, &settings)
+    compute::scene(
+        &args.scene,
+        args.cuts.as_deref(),
+        wish(args)?,
+        args.knots.as_deref(),
+        &settings,
+    )
 }
 
 /// What the options ask for instead of settings.

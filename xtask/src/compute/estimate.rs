@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use topo_analysis::{
     ElasticScene, Estimate, NematicScene, SweepSettings, estimate_nematic_sweep, estimate_sweep,
 };
-use topo_knots::{KnotTable, TightenSettings};
+use topo_knots::TightenSettings;
 
 /// What the tables of an order are expected to take, by stage; the drawing is not counted.
 pub fn of_order(
@@ -14,25 +14,25 @@ pub fn of_order(
     settings: &SweepSettings,
 ) -> Result<BTreeMap<&'static str, Estimate>, XtaskError> {
     let mut stages = BTreeMap::new();
-    let table = KnotTable::builtin();
+    let table = order.table;
     let scene = ElasticScene::published(preset(order.quality));
     if (order.elastic || order.knots) && !order.as_is {
         let shapes = |names: &[String], tighten| {
-            Estimate::of_shapes(names, &table, tighten, order.results, order.jobs)
+            Estimate::of_shapes(names, table, tighten, order.results, order.jobs)
         };
-        let names = super::knots_of(&scene, &table)?;
+        let names = super::knots_of(&scene, table)?;
         let mut all = shapes(&names, &scene.tighten)?;
         if order.knots {
-            let more = super::more_knots(order.quality, &names, &table);
+            let more = super::more_knots(order.quality, &names, table);
             all = all.then(shapes(&more, &TightenSettings::standard())?);
         }
         stages.insert("tight shapes", all);
     }
     if order.elastic {
-        stages.insert("elastic", estimate_sweep(&scene, &table, settings)?);
+        stages.insert("elastic", estimate_sweep(&scene, table, settings)?);
         let mut variants = Estimate::default();
         for variant in scene.variants() {
-            variants = variants.then(estimate_sweep(&variant.scene, &table, settings)?);
+            variants = variants.then(estimate_sweep(&variant.scene, table, settings)?);
         }
         stages.insert("variants", variants);
     }

@@ -1,6 +1,7 @@
 //! Nematic sweeps: run with progress, told as a table.
 
-use super::{Teller, by_wish};
+use super::by_wish;
+use super::report::{Failures, Reporter, tell_estimate, tell_taken};
 use crate::error::XtaskError;
 use topo_analysis::{
     NematicReport, NematicScene, SweepSettings, errors_of_colloids, estimate_nematic_sweep,
@@ -14,8 +15,11 @@ pub fn scene(scene: &NematicScene, settings: &SweepSettings) -> Result<(), Xtask
     if let Some(grant) = &grant {
         by_wish::tell_grant(grant, "ξ_N a cell");
     }
-    super::tell_estimate(&estimate_nematic_sweep(scene, settings)?);
+    tell_estimate(&estimate_nematic_sweep(scene, settings)?);
+    let folder = scene.results(&settings.out);
     let report = sweep(scene, settings)?;
+    let mut failures = Failures::default();
+    failures.add(&report.failed, &folder);
     println!(
         "  q flow  F charged  F after  order  ring/R mode     t50     t90     t99   t99.9  CPU s   MB"
     );
@@ -66,20 +70,22 @@ pub fn scene(scene: &NematicScene, settings: &SweepSettings) -> Result<(), Xtask
             );
         }
     }
-    super::tell_taken(&report.estimate, report.wall_seconds);
+    tell_taken(&report.estimate, report.wall_seconds);
     if let Some(grant) = &grant {
-        let coarser = sweep(&scene.check_of(grant), settings)?;
+        let check = scene.check_of(grant);
+        let coarser = sweep(&check, settings)?;
+        failures.add(&coarser.failed, &check.results(&settings.out));
         let rows = errors_of_colloids(grant, &report.rows, &coarser.rows);
-        by_wish::tell_errors(grant, &rows, &scene.results(&settings.out))?;
+        by_wish::tell_errors(grant, &rows, &folder)?;
     }
-    println!("written to {}", scene.results(&settings.out).display());
-    Ok(())
+    println!("written to {}", folder.display());
+    failures.into_result()
 }
 
 /// Runs a sweep with progress.
 pub fn sweep(scene: &NematicScene, settings: &SweepSettings) -> Result<NematicReport, XtaskError> {
-    let teller = Teller::new("nematic");
-    let report = run_nematic_sweep(scene, settings, &|event| teller.tell(event))?;
-    teller.finish(report.interrupted)?;
+    let reporter = Reporter::new("nematic");
+    let report = run_nematic_sweep(scene, settings, &|event| reporter.report(event))?;
+    reporter.finish(report.interrupted)?;
     Ok(report)
 }

@@ -48,7 +48,7 @@ impl NematicSweep {
 
     /// Folder of a case.
     pub fn case(&self, row: &NematicRow) -> PathBuf {
-        self.folder.join(row.case_name())
+        self.folder.join(&row.case)
     }
 
     /// Rings of a case at the times kept; the charged state first, its time `None`.

@@ -32,7 +32,7 @@ fn colloid(out: &Path, keep_fields: bool) -> PathBuf {
         ..SweepSettings::new(out)
     };
     let report = run_nematic_sweep(&scene, &settings, &|_| {}).unwrap();
-    out.join("nematic").join(report.rows[0].case_name())
+    out.join(&scene.folder).join(&report.rows[0].case)
 }
 
 #[test]

@@ -20,7 +20,7 @@ pub fn nematic(folder: &Path) {
         }
     }
     for row in &rows {
-        let case = folder.join(row.case_name());
+        let case = folder.join(&row.case);
         table(&case.join("ring.csv"), &lines(row));
         table(&case.join("slices.csv"), &slices(row));
         table(&case.join("series.csv"), &series(row));
@@ -45,6 +45,7 @@ fn row(q: u32, flow: &str) -> NematicRow {
     };
     let time = |t: f64| Some(t * RADIUS * RADIUS);
     NematicRow {
+        case: format!("q{q:02}_flow-{flow}"),
         radius: RADIUS,
         spacing: 1.5,
         q,

@@ -120,7 +120,7 @@ pub(crate) fn measured_discharge(
         .cut(site)
         .and_then(|c| c.discharge(&job.scene.discharge, interrupt))
         .map_err(|source| AnalysisError::Rod {
-            case: job.case.name(),
+            case: job.scene.case_name(job.case),
             source,
         })?;
     let times = DischargeTimes::of(&run.record.curve, &ELASTIC, run.start, &ELASTIC_SHARES);

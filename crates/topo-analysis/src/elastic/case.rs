@@ -13,7 +13,7 @@ use super::imperfection::perturbed;
 use super::record::{MadeCase, write_case};
 use super::scene::{ElasticCase, ElasticScene};
 use crate::AnalysisError;
-use crate::folder::identity;
+use crate::folder::{Outcome, identity};
 use crate::table::{SweepRow, push_warning};
 use crate::timeline::Timeline;
 use crate::times::{DischargeTimes, ELASTIC_SHARES};
@@ -38,6 +38,23 @@ pub(crate) fn fingerprint(scene: &ElasticScene, case: &ElasticCase, entry: &Knot
         all["fixed_cuts"] = json!(cuts.get(&case.state()));
     }
     identity(&all)
+}
+
+/// What the numbers of a case depend on besides the case, its imperfection and seed.
+pub(super) fn settings_of(scene: &ElasticScene, case: &ElasticCase) -> serde_json::Value {
+    let fixed = scene
+        .fixed_cuts
+        .as_ref()
+        .map(|cuts| cuts.get(&case.state()));
+    json!([
+        scene.tighten,
+        scene.charge,
+        scene.cuts,
+        scene.discharge,
+        scene.timeline,
+        scene.accuracy,
+        fixed
+    ])
 }
 
 /// Whether a twisted rod may start from the tight curve or from its mirror image, being the same knot.
@@ -76,7 +93,7 @@ pub(crate) fn charge(
         table,
     } = *job;
     let refuse = |source| AnalysisError::Rod {
-        case: case.name(),
+        case: scene.case_name(case),
         source,
     };
     let entry = table.get(&case.knot)?;
@@ -146,12 +163,10 @@ pub(crate) fn run(
     job: &CaseJob<'_>,
     folder: &Path,
     interrupt: &Interrupt,
-) -> Result<Option<Vec<SweepRow>>, AnalysisError> {
-    let CaseJob {
-        scene, case, table, ..
-    } = *job;
+) -> Result<Option<Outcome<SweepRow>>, AnalysisError> {
+    let CaseJob { scene, case, .. } = *job;
     let refuse = |source| AnalysisError::Rod {
-        case: case.name(),
+        case: scene.case_name(case),
         source,
     };
     let clock = CpuClock::start();
@@ -179,7 +194,7 @@ pub(crate) fn run(
             .collect(),
         Cuts::All(k) => (0..k).map(|i| i as f64 / k as f64).collect(),
     };
-    let mut base = charged_row(case, &charged, table);
+    let mut base = charged_row(job, &charged);
     base.energy_other_image = energy_other_image;
     let mut runs = Vec::new();
     if charged.record().report.stop.is_success() {
@@ -215,11 +230,15 @@ pub(crate) fn run(
     } else {
         runs.iter().map(|r| r.row.clone()).collect()
     };
+    let outcome = Outcome {
+        rows,
+        failure: failure(&charged, &runs),
+    };
     let made = MadeCase {
         job,
         charged: &charged,
         runs: &runs,
-        rows: &rows,
+        outcome: &outcome,
         charge_seconds,
     };
     let written = write_case(&made, folder);
@@ -230,7 +249,20 @@ pub(crate) fn run(
         }
         return Err(error);
     }
-    Ok(Some(rows))
+    Ok(Some(outcome))
+}
+
+/// Why a case did not come to its end.
+fn failure(charged: &ChargedRod, runs: &[FollowedCut]) -> Option<String> {
+    let stop = &charged.record().report.stop;
+    if !stop.is_success() {
+        return Some(format!("charge stopped: {stop}"));
+    }
+    runs.iter().find_map(|run| {
+        let stop = &run.discharge.record.report.stop;
+        let at = run.discharge.at;
+        (!stop.is_success()).then(|| format!("discharge after the cut at {at} stopped: {stop}"))
+    })
 }
 
 /// Knot types of a discharge. Those of a mirror image are found on the image of its shapes, which is that of the knot itself: a
@@ -273,20 +305,16 @@ fn phase_warnings(phase: &str, report: &PhaseReport, warnings: &mut String) {
 }
 
 /// The part of a row that all cuts share.
-fn charged_row(case: &ElasticCase, charged: &ChargedRod, table: &KnotTable) -> SweepRow {
+fn charged_row(job: &CaseJob<'_>, charged: &ChargedRod) -> SweepRow {
+    let CaseJob { case, table, .. } = *job;
     let record = charged.record();
     let report = &record.report;
     let mut row = SweepRow {
-        case: case.name(),
-        knot: case.knot.clone(),
-        twist: case.rod.twist.unwrap_or(0.0),
-        reading: case.rod.reading.name().to_owned(),
-        edges: case.rod.n_edges,
         link_drift: report.link_drift,
         min_distance_over_contact: report.min_distance_over_contact,
         steps: report.n_steps,
         rejected: report.rejections.total(),
-        ..SweepRow::default()
+        ..job.scene.blank_row(job.case)
     };
     if let Some(last) = record.samples.last() {
         row.energy = last.elastic();

@@ -41,7 +41,7 @@ pub fn discharge_frames(
         return Ok(Vec::new());
     };
     let refuse = |source| AnalysisError::Rod {
-        case: case.name(),
+        case: scene.case_name(&case),
         source,
     };
     let job = CaseJob {

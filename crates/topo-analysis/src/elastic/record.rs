@@ -9,7 +9,7 @@ use topo_rod::{ChargedRod, Guards, RodSample, energy_density};
 
 use super::case::{CaseJob, FollowedCut, RESULTS_VERSION, fingerprint};
 use crate::AnalysisError;
-use crate::folder::{digests, make_folder};
+use crate::folder::{Outcome, digests, forget_file, make_folder};
 use crate::table::{SweepRow, write_table};
 use crate::timeline::Timeline;
 
@@ -19,7 +19,7 @@ pub(super) struct MadeCase<'a> {
     pub job: &'a CaseJob<'a>,
     pub charged: &'a ChargedRod,
     pub runs: &'a [FollowedCut],
-    pub rows: &'a [SweepRow],
+    pub outcome: &'a Outcome<SweepRow>,
     pub charge_seconds: f64,
 }
 
@@ -114,28 +114,16 @@ fn snapshot_indices(samples: &[RodSample], start: f64) -> Vec<usize> {
     indices
 }
 
-/// Takes away the mark of completeness of an earlier run, so that a folder never mixes two.
-fn forget(folder: &Path) -> Result<(), AnalysisError> {
-    match std::fs::remove_file(folder.join("run.json")) {
-        Err(source) if source.kind() != std::io::ErrorKind::NotFound => {
-            Err(AnalysisError::Output {
-                path: folder.to_owned(),
-                source,
-            })
-        }
-        _ => Ok(()),
-    }
-}
-
 /// Writes the folder of a case; what is there of an earlier run is replaced.
 pub(super) fn write_case(made: &MadeCase<'_>, folder: &Path) -> Result<(), AnalysisError> {
     let MadeCase {
         job,
         charged,
         runs,
-        rows,
+        outcome,
         charge_seconds,
     } = *made;
+    let rows = &outcome.rows;
     let CaseJob {
         scene,
         case,
@@ -144,7 +132,8 @@ pub(super) fn write_case(made: &MadeCase<'_>, folder: &Path) -> Result<(), Analy
     } = *job;
     let area = std::f64::consts::PI;
     make_folder(folder)?;
-    forget(folder)?;
+    // the mark of completeness of an earlier run goes first, so that a folder never mixes two
+    forget_file(&folder.join("run.json"))?;
     let state = charged.state();
     let vertices: Vec<ChargedVertex> = (0..state.n_vertices())
         .map(|i| {
@@ -236,6 +225,7 @@ pub(super) fn write_case(made: &MadeCase<'_>, folder: &Path) -> Result<(), Analy
         "charge": charged.record().report,
         "cuts": cuts,
         "rows": rows,
+        "failure": outcome.failure,
         "files": digests(folder, &["charged.csv", "charge.csv", "series.csv", "snapshots.csv"]),
         "warnings": rows.iter().map(|r| &r.warnings).filter(|w| !w.is_empty()).collect::<Vec<_>>(),
         "timings": { "charge_cpu_seconds": charge_seconds, "cpu_seconds": rows.iter().map(|r| r.cpu_seconds).sum::<f64>() },

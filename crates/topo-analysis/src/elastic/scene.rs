@@ -62,20 +62,6 @@ pub struct ElasticCase {
 }
 
 impl ElasticCase {
-    /// Folder name, unique within a scene.
-    pub fn name(&self) -> String {
-        let twist = self
-            .rod
-            .twist
-            .map_or("untwisted".to_owned(), |t| format!("twist{t:+.2}"));
-        format!(
-            "{}_{twist}_{}_n{}",
-            self.knot,
-            self.rod.reading.name(),
-            self.rod.n_edges
-        )
-    }
-
     /// The charged state, whatever the resolution.
     pub fn state(&self) -> String {
         state(&self.knot, self.rod.twist.unwrap_or(0.0))
@@ -206,11 +192,10 @@ mod tests {
 
     #[test]
     fn the_published_sweep_has_238_cases() {
-        let cases = ElasticScene::published(Preset::Draft)
-            .cases(&topo_knots::KnotTable::builtin())
-            .unwrap();
+        let scene = ElasticScene::published(Preset::Draft);
+        let cases = scene.cases(&topo_knots::KnotTable::builtin()).unwrap();
         assert_eq!(cases.len(), 238);
-        assert_eq!(cases[8].name(), "3_1_twist+0.00_shrunk_n200");
+        assert_eq!(scene.case_name(&cases[8]), "3_1_twist+0.00_shrunk_n200");
         // 14 knots at θ'h = −2, −1.75, ..., 2, of the published material
         let twists = cases.iter().map(|case| case.rod.twist.unwrap());
         let quarters = (0..238).map(|k| f64::from(k % 17 - 8) / 4.0);

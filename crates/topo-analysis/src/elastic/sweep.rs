@@ -1,204 +1,153 @@
-//! A scene's cases, in parallel, resumable, into one table.
+//! An elastic scene as an experiment: tight shapes first, then its cases.
 
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::collections::BTreeMap;
 
 use rayon::prelude::*;
-use topo_knots::KnotTable;
+use topo_knots::{KnotTable, TightKnot};
 
 use super::case::{self, CaseJob, RESULTS_VERSION, fingerprint};
 use super::choices::Cuts;
 use super::scene::{ElasticCase, ElasticScene};
 use crate::AnalysisError;
-use crate::cost::{Cost, Estimate, Speed, Stopwatch, estimate, threads};
-use crate::folder::{Earlier, finished, tell_replaced, writable};
-use crate::knots::{Shapes, tight_shapes};
-use crate::progress::{Event, SweepSettings, with_jobs};
-use crate::table::{SweepRow, write_table};
+use crate::cost::{Cost, Estimate};
+use crate::folder::Outcome;
+use crate::knots::tight_shapes;
+use crate::progress::{Event, SweepSettings};
+use crate::sweep::{self, Experiment, Place, SweepReport};
+use crate::table::SweepRow;
 
-/// What a sweep leaves behind.
-#[derive(Debug, Clone)]
-pub struct SweepReport {
-    /// Rows of the table, cases in the order of the scene.
-    pub rows: Vec<SweepRow>,
-    /// Cases computed now.
-    pub n_computed: usize,
-    /// Cases found finished.
-    pub n_reused: usize,
-    /// Whether it was asked to stop before the end.
-    pub interrupted: bool,
-    /// Tight shapes it started from.
-    pub shapes: Shapes,
-    /// What it was expected to take.
-    pub estimate: Estimate,
-    /// Seconds that its cases took, the start shapes not counted.
-    pub wall_seconds: f64,
+/// What an elastic sweep leaves behind.
+pub type ElasticReport = SweepReport<SweepRow>;
+
+/// A scene with the knots that it may name.
+struct Rods<'a> {
+    scene: &'a ElasticScene,
+    table: &'a KnotTable,
+}
+
+impl Experiment for Rods<'_> {
+    type Case = ElasticCase;
+    type Row = SweepRow;
+    /// Tight shapes by name; why not where there is none.
+    type Start = BTreeMap<String, Result<TightKnot, String>>;
+
+    const RESULTS: u32 = RESULTS_VERSION;
+
+    fn folder(&self) -> &str {
+        &self.scene.folder
+    }
+
+    fn text(&self) -> String {
+        self.scene.resolved_text()
+    }
+
+    fn cases(&self) -> Result<Vec<ElasticCase>, AnalysisError> {
+        self.scene.cases(self.table)
+    }
+
+    fn name(&self, case: &ElasticCase) -> String {
+        self.scene.case_name(case)
+    }
+
+    fn fingerprint(&self, case: &ElasticCase) -> Result<String, AnalysisError> {
+        let entry = self.table.get(&case.knot)?;
+        Ok(fingerprint(self.scene, case, &entry))
+    }
+
+    fn blank_row(&self, case: &ElasticCase) -> SweepRow {
+        self.scene.blank_row(case)
+    }
+
+    fn cost(&self, _case: &ElasticCase, n_rows: Option<usize>) -> Result<Cost, AnalysisError> {
+        Ok(case_cost(self.scene, n_rows))
+    }
+
+    fn prepare(
+        &self,
+        todo: &[&ElasticCase],
+        settings: &SweepSettings,
+        progress: &(dyn Fn(Event<'_>) + Sync),
+    ) -> Result<Self::Start, AnalysisError> {
+        let mut names: Vec<String> = todo.iter().map(|c| c.knot.clone()).collect();
+        names.sort();
+        names.dedup();
+        let shape = |name: String| {
+            let made = tight_shapes(
+                std::slice::from_ref(&name),
+                self.table,
+                &self.scene.tighten,
+                &settings.out,
+                &settings.interrupt,
+                progress,
+            );
+            match made {
+                Ok(mut shapes) => Ok(shapes.remove(&name).map(|shape| (name, Ok(shape)))),
+                Err(AnalysisError::Knot(error)) => Ok(Some((name, Err(error.to_string())))),
+                Err(error) => Err(error),
+            }
+        };
+        let made: Vec<_> = names
+            .into_par_iter()
+            .with_max_len(1)
+            .map(shape)
+            .collect::<Result<_, AnalysisError>>()?;
+        Ok(made.into_iter().flatten().collect())
+    }
+
+    fn run(
+        &self,
+        case: &ElasticCase,
+        shapes: &Self::Start,
+        place: &Place<'_>,
+    ) -> Result<Option<Outcome<SweepRow>>, AnalysisError> {
+        let tight = match shapes.get(&case.knot) {
+            Some(Ok(tight)) => tight,
+            Some(Err(reason)) => {
+                return Err(AnalysisError::Shape {
+                    knot: case.knot.clone(),
+                    reason: reason.clone(),
+                });
+            }
+            // interrupted while shapes were made
+            None => return Ok(None),
+        };
+        let job = CaseJob {
+            scene: self.scene,
+            case,
+            tight,
+            table: self.table,
+        };
+        case::run(&job, place.folder, &place.settings.interrupt)
+    }
 }
 
 /// Runs all cases of a scene; what an earlier run finished with the same settings is kept.
 ///
-/// Each case writes its own folder and is complete when its `run.json` is there; `elastic/sweep.csv` is written at the end, also
-/// after an interrupt, from what is finished. Results do not depend on the number of jobs.
+/// Each case writes its own folder and is complete when its `run.json` is there; `sweep.csv`, and `failed.csv` where a case failed,
+/// are written at the end, also after an interrupt, from what is finished. Results do not depend on the number of jobs.
 ///
 /// # Errors
-/// An unknown knot, a rod that cannot be built, or files that cannot be written. A run that stops early is no error: its row
-/// carries the reason.
+/// An unknown knot, a folder with the results of another scene, or files that cannot be written. A case that fails is no error: it
+/// is in the report.
 pub fn run_sweep(
     scene: &ElasticScene,
     table: &KnotTable,
     settings: &SweepSettings,
     progress: &(dyn Fn(Event<'_>) + Sync),
-) -> Result<SweepReport, AnalysisError> {
-    let folder = scene.results(&settings.out);
-    writable(&folder)?;
-    let Plan { cases, found, todo } = plan(scene, table, settings)?;
-    let estimate = cost(scene, settings, &found, &todo);
-    let n_reused = found.iter().filter(|f| f.is_finished()).count();
-    let n_todo = estimate.n_cases;
-    progress(Event::Begin {
-        n_cases: n_todo + n_reused,
-        n_reused,
-        estimate: &estimate,
-    });
-    let names_of = cases.iter().map(ElasticCase::name);
-    tell_replaced(names_of.zip(found.iter().map(Earlier::reason)), progress);
-    let mut names: Vec<String> = cases
-        .iter()
-        .zip(&todo)
-        .filter(|(_, todo)| **todo)
-        .map(|(c, _)| c.knot.clone())
-        .collect();
-    names.dedup();
-    names.sort();
-    names.dedup();
-    let n_done = AtomicUsize::new(n_reused);
-    let (shapes, computed, wall_seconds) =
-        with_jobs(settings.jobs, || -> Result<_, AnalysisError> {
-            let shapes = tight_shapes(
-                &names,
-                table,
-                &scene.tighten,
-                &settings.out,
-                &settings.interrupt,
-                progress,
-            )?;
-            let clock = Stopwatch::start();
-            let computed: Vec<Option<Vec<SweepRow>>> = cases
-                .par_iter()
-                .zip(&todo)
-                .with_max_len(1)
-                .map(|(case, todo)| {
-                    if !todo || settings.interrupt.is_requested() {
-                        return Ok(None);
-                    }
-                    let Some(tight) = shapes.get(&case.knot) else {
-                        return Ok(None);
-                    };
-                    let job = CaseJob {
-                        scene,
-                        case,
-                        tight,
-                        table,
-                    };
-                    let rows = case::run(&job, &folder.join(case.name()), &settings.interrupt)?;
-                    if let Some(rows) = &rows {
-                        let n_done = n_done.fetch_add(1, Ordering::Relaxed) + 1;
-                        let warnings: Vec<&str> = rows
-                            .iter()
-                            .map(|r| r.warnings.as_str())
-                            .filter(|w| !w.is_empty())
-                            .collect();
-                        progress(Event::Case {
-                            name: &case.name(),
-                            n_done,
-                            warnings: &warnings.join(";"),
-                        });
-                    }
-                    Ok(rows)
-                })
-                .collect::<Result<_, AnalysisError>>()?;
-            Ok((shapes, computed, clock.seconds()))
-        })??;
-    let n_computed = computed.iter().filter(|c| c.is_some()).count();
-    let interrupted = settings.interrupt.is_requested() && n_computed < n_todo;
-    let rows: Vec<SweepRow> = found
-        .into_iter()
-        .zip(computed)
-        .filter_map(|(f, c)| f.rows().or(c))
-        .flatten()
-        .collect();
-    write_table(&folder.join("sweep.csv"), &rows)?;
-    Ok(SweepReport {
-        rows,
-        n_computed,
-        n_reused,
-        interrupted,
-        shapes,
-        estimate,
-        wall_seconds,
-    })
+) -> Result<ElasticReport, AnalysisError> {
+    sweep::run(&Rods { scene, table }, settings, progress)
 }
 
 /// What [`run_sweep`] is expected to take for what is not finished, the start shapes not counted.
 ///
 /// # Errors
-/// An unknown knot.
+/// An unknown knot, or a folder with the results of another scene.
 pub fn estimate_sweep(
     scene: &ElasticScene,
     table: &KnotTable,
     settings: &SweepSettings,
 ) -> Result<Estimate, AnalysisError> {
-    let Plan { found, todo, .. } = plan(scene, table, settings)?;
-    Ok(cost(scene, settings, &found, &todo))
-}
-
-/// The cases of a scene, what is left of them, and which are computed now.
-struct Plan {
-    cases: Vec<ElasticCase>,
-    found: Vec<Earlier<SweepRow>>,
-    todo: Vec<bool>,
-}
-
-fn plan(
-    scene: &ElasticScene,
-    table: &KnotTable,
-    settings: &SweepSettings,
-) -> Result<Plan, AnalysisError> {
-    let folder = scene.results(&settings.out);
-    let cases = scene.cases(table)?;
-    let mut found = Vec::with_capacity(cases.len());
-    for (k, case) in cases.iter().enumerate() {
-        let entry = table.get(&case.knot)?;
-        let mark = fingerprint(scene, case, &entry);
-        found.push(if settings.fresh && settings.takes(k) {
-            Earlier::None
-        } else {
-            finished(&folder.join(case.name()), &mark, RESULTS_VERSION)
-        });
-    }
-    let todo = (0..cases.len())
-        .map(|k| !found[k].is_finished() && settings.takes(k))
-        .collect();
-    Ok(Plan { cases, found, todo })
-}
-
-fn cost(
-    scene: &ElasticScene,
-    settings: &SweepSettings,
-    found: &[Earlier<SweepRow>],
-    todo: &[bool],
-) -> Estimate {
-    let taken: Vec<(f64, f64)> = found
-        .iter()
-        .filter_map(|f| match f {
-            Earlier::Finished(rows) => Some((
-                case_cost(scene, Some(rows.len())).seconds,
-                rows.iter().map(|r| r.cpu_seconds).sum(),
-            )),
-            _ => None,
-        })
-        .collect();
-    let costs = vec![case_cost(scene, None); todo.iter().filter(|t| **t).count()];
-    estimate(&costs, Speed::of(&taken), threads(settings.jobs), true)
+    sweep::estimate(&Rods { scene, table }, settings)
 }
 
 /// Cost of a charge with its discharges, as measured over the published knots and twists.
@@ -243,6 +192,7 @@ const BYTES: f64 = 6e7;
 #[cfg(test)]
 mod tests {
     use std::path::Path;
+    use std::sync::atomic::Ordering;
 
     use super::*;
 
@@ -255,7 +205,7 @@ mod tests {
         }
     }
 
-    fn timeless(report: &SweepReport) -> Vec<SweepRow> {
+    fn timeless(report: &ElasticReport) -> Vec<SweepRow> {
         let drop = |r: &SweepRow| SweepRow {
             cpu_seconds: 0.0,
             ..r.clone()
@@ -273,22 +223,34 @@ mod tests {
             (first.n_computed, first.n_reused, first.rows.len()),
             (2, 0, 2)
         );
-        let results = folder.path().join("elastic");
-        let read = |file: &str| std::fs::read(results.join(file)).unwrap();
-        let series = read("3_1_twist+0.00_shrunk_n60/series.csv");
+        let results = folder.path().join(&scene.folder);
+        let first_case = results.join(&first.rows[0].case);
+        let read = |file: &str| std::fs::read(first_case.join(file)).unwrap();
+        let series = read("series.csv");
         let again = run_sweep(&scene, &table, &settings(folder.path(), 2), &|_| {}).unwrap();
         assert_eq!((again.n_computed, again.n_reused), (0, 2));
         assert_eq!(again.rows, first.rows);
-        let mark = results.join("3_1_twist+0.00_shrunk_n60/run.json");
+        let mark = first_case.join("run.json");
         std::fs::write(&mark, "{\"fingerprint\": ").unwrap();
         let mended = run_sweep(&scene, &table, &settings(folder.path(), 1), &|_| {}).unwrap();
         assert_eq!((mended.n_computed, mended.n_reused), (1, 1));
         assert_eq!(timeless(&mended), timeless(&first));
-        assert_eq!(read("3_1_twist+0.00_shrunk_n60/series.csv"), series);
+        assert_eq!(read("series.csv"), series);
         let mut other = scene.clone();
         other.accuracy.tolerance = 2e-2;
-        let changed = run_sweep(&other, &table, &settings(folder.path(), 0), &|_| {}).unwrap();
-        assert_eq!(changed.n_computed, 2);
+        let refused = run_sweep(&other, &table, &settings(folder.path(), 0), &|_| {});
+        let refused = refused.unwrap_err().to_string();
+        assert!(
+            refused.contains("accuracy.tolerance = 0.01 there, 0.02 here"),
+            "{refused}"
+        );
+        // a scene may grow
+        let mut longer = scene.clone();
+        longer.twists.push(0.5);
+        let grown = run_sweep(&longer, &table, &settings(folder.path(), 0), &|_| {}).unwrap();
+        assert_eq!((grown.n_computed, grown.n_reused), (1, 2));
+        assert_eq!(grown.rows[..2], mended.rows[..]);
+        assert!(run_sweep(&scene, &table, &settings(folder.path(), 0), &|_| {}).is_err());
     }
 
     #[test]
@@ -308,7 +270,7 @@ mod tests {
         };
         let (first, told) = sweep(&scene);
         assert!(told.is_empty());
-        let case = folder.path().join("elastic/3_1_twist+0.00_shrunk_n60");
+        let case = folder.path().join(&scene.folder).join(&first[0].case);
         let mark = case.join("run.json");
         let text = std::fs::read_to_string(&mark).unwrap();
         let version = format!("\"results\": {RESULTS_VERSION}");
@@ -350,14 +312,6 @@ mod tests {
             );
             assert!(std::fs::read(&path).unwrap() == whole);
         }
-        let mut other = scene.clone();
-        other.accuracy.tolerance = 2e-2;
-        let (_, told) = sweep(&other);
-        assert_eq!(
-            told,
-            [("it was computed with other settings".to_owned(), 2)]
-        );
-        assert!(sweep(&other).1.is_empty());
     }
 
     #[test]
@@ -376,10 +330,12 @@ mod tests {
             assert_eq!(estimate_sweep(&scene, &table, &part).unwrap().n_cases, 1);
             let report = run_sweep(&scene, &table, &part, &|_| {}).unwrap();
             assert!(report.n_computed == 1 && report.rows.len() == 1 && !report.interrupted);
-            let name = scene.cases(&table).unwrap()[usize::from(shard == "2/2")].name();
-            let to = merged.path().join("elastic").join(&name);
+            let case = &scene.cases(&table).unwrap()[usize::from(shard == "2/2")];
+            let name = scene.case_name(case);
+            let to = merged.path().join(&scene.folder).join(&name);
             std::fs::create_dir_all(&to).unwrap();
-            for file in std::fs::read_dir(elsewhere.path().join("elastic").join(&name)).unwrap() {
+            for file in std::fs::read_dir(elsewhere.path().join(&scene.folder).join(&name)).unwrap()
+            {
                 let file = file.unwrap();
                 std::fs::copy(file.path(), to.join(file.file_name())).unwrap();
             }
@@ -426,9 +382,9 @@ mod tests {
         settings.interrupt.request();
         let report = run_sweep(&scene, &table, &settings, &|_| {}).unwrap();
         assert!(report.interrupted && report.rows.is_empty());
-        let entries: Vec<_> = std::fs::read_dir(folder.path().join("elastic"))
+        let entries: Vec<_> = std::fs::read_dir(folder.path().join(&scene.folder))
             .unwrap()
             .collect();
-        assert_eq!(entries.len(), 1, "only the table");
+        assert_eq!(entries.len(), 2, "only the table and the scene");
     }
 }

@@ -1,11 +1,7 @@
 //! One case: charge a colloid, switch its anchoring, follow the discharge, and write a folder.
 
-use std::path::Path;
-
 use serde_json::json;
-use topo_core::{
-    FileError, Interrupt, StopReason, load_checkpoint, save_checkpoint, write_atomic_bytes,
-};
+use topo_core::{FileError, StopReason, load_checkpoint, save_checkpoint, write_atomic_bytes};
 use topo_nematic::{
     ChargeReport, ChargedNematic, Discharge, DischargeSettings, FinalSource, FlowCoupling,
     MinimumState, NematicAccuracy, NematicBattery, NematicError, NematicState, Phase, Progress,
@@ -18,7 +14,9 @@ use super::scene::{NematicCase, NematicScene};
 use super::snapshot::{Kept, RING_ORDER, centre};
 use super::table::{NematicRow, NematicSample};
 use crate::AnalysisError;
-use crate::folder::{digests, identity, make_folder};
+use crate::folder::{Outcome, digests, forget_checkpoints, forget_file, identity, make_folder};
+use crate::progress::Event;
+use crate::sweep::Place;
 use crate::table::{push_warning, write_table};
 use crate::times::DischargeTimes;
 
@@ -33,81 +31,98 @@ const KEPT: &str = "nematic-snapshots/4";
 
 /// Identity of a case: everything that its numbers depend on.
 pub(super) fn fingerprint(scene: &NematicScene, case: &NematicCase) -> String {
-    // the number of threads changes no bit
-    let accuracy = NematicAccuracy {
-        threads: Threads::One,
-        memory_limit: None,
-        ..scene.accuracy
-    };
     identity(&json!({
         "version": RESULTS_VERSION, "case": case, "charge": scene.charge, "switch": scene.switch,
-        "discharge": scene.discharge, "accuracy": accuracy,
+        "discharge": scene.discharge, "accuracy": hashed_accuracy(&scene.accuracy),
     }))
+}
+
+/// The part of the accuracy that numbers depend on: the number of threads changes no bit.
+pub(super) fn hashed_accuracy(accuracy: &NematicAccuracy) -> NematicAccuracy {
+    NematicAccuracy {
+        threads: Threads::One,
+        memory_limit: None,
+        ..*accuracy
+    }
 }
 
 /// How a case runs.
 pub(super) struct CaseRun<'a> {
     pub scene: &'a NematicScene,
     pub case: &'a NematicCase,
-    pub folder: &'a Path,
-    pub interrupt: &'a Interrupt,
+    pub place: &'a Place<'a>,
     pub threads: Threads,
-    pub keep_fields: bool,
-    pub checkpoint_seconds: f64,
-    /// Told when a checkpoint could not be used.
-    pub damaged: &'a (dyn Fn() + Sync),
-    pub told: &'a (dyn Fn(&Progress) + Sync),
 }
 
 impl CaseRun<'_> {
     /// Runs the case and writes its folder; `None` when interrupted: then its checkpoint stays.
     ///
     /// A checkpoint that cannot be used is told and forgotten, and the case begins anew.
-    pub fn run(&self) -> Result<Option<NematicRow>, AnalysisError> {
+    pub fn run(&self) -> Result<Option<Outcome<NematicRow>>, AnalysisError> {
         match self.attempt() {
             Err(AnalysisError::Nematic { source, .. }) if is_unusable_checkpoint(&source) => {
-                (self.damaged)();
-                forget_others(self.folder, "")?;
+                self.tell_damaged();
+                forget_checkpoints(self.place.folder, "")?;
                 self.attempt()
             }
             other => other,
         }
     }
 
-    fn attempt(&self) -> Result<Option<NematicRow>, AnalysisError> {
+    fn tell_damaged(&self) {
+        (self.place.progress)(Event::Replaced {
+            names: &[self.place.name.to_owned()],
+            reason: "its checkpoint is damaged",
+        });
+    }
+
+    fn tell(&self, p: &Progress) {
+        (self.place.progress)(Event::Working {
+            name: self.place.name,
+            what: &told(p),
+        });
+    }
+
+    fn attempt(&self) -> Result<Option<Outcome<NematicRow>>, AnalysisError> {
+        let Place {
+            folder,
+            settings: sweep,
+            ..
+        } = *self.place;
+        let interrupt = &sweep.interrupt;
         let refuse = |source| AnalysisError::Nematic {
-            case: self.scene.blank_row(self.case).case_name(),
+            case: self.place.name.to_owned(),
             source,
         };
-        make_folder(self.folder)?;
+        make_folder(folder)?;
         let accuracy = NematicAccuracy {
             threads: self.threads,
             ..self.scene.accuracy
         };
         let battery = NematicBattery::new(&self.case.nematic, &accuracy).map_err(refuse)?;
-        let mut tell = |p: &Progress| (self.told)(p);
+        let mut tell = |p: &Progress| self.tell(p);
         let mark = fingerprint(self.scene, self.case);
-        forget_others(self.folder, &mark)?;
-        let checkpoint = |phase: &str| self.folder.join(format!("{phase}-{mark}.checkpoint"));
-        let mut hooks = RunHooks::new(self.interrupt)
+        forget_checkpoints(folder, &mark)?;
+        let checkpoint = |phase: &str| folder.join(format!("{phase}-{mark}.checkpoint"));
+        let mut hooks = RunHooks::new(interrupt)
             .with_progress(&mut tell)
-            .with_checkpoint(&checkpoint("charge"), self.checkpoint_seconds);
+            .with_checkpoint(&checkpoint("charge"), sweep.checkpoint_seconds);
         let charged = battery
             .charge(&self.scene.charge, &mut hooks)
             .map_err(refuse)?;
-        if self.interrupt.is_requested() {
+        if interrupt.is_requested() {
             return Ok(None);
         }
         let released = charged.switch(&self.scene.switch).map_err(refuse)?;
         let end = released
-            .final_state(&mut RunHooks::new(self.interrupt).with_progress(&mut tell))
+            .final_state(&mut RunHooks::new(interrupt).with_progress(&mut tell))
             .map_err(refuse)?;
         let settings = DischargeSettings {
             flow: self.case.flow,
             ..self.scene.discharge.clone()
         };
         // a run that keeps fields cannot go on from one that did not
-        let [snapshots, discharge] = if self.keep_fields {
+        let [snapshots, discharge] = if sweep.keep_fields {
             ["snapshots-fields", "discharge-fields"]
         } else {
             ["snapshots", "discharge"]
@@ -117,15 +132,15 @@ impl CaseRun<'_> {
         let mut kept: Kept = load_checkpoint(&place, KEPT).unwrap_or_default();
         if kept == Kept::default() {
             if there {
-                (self.damaged)();
+                self.tell_damaged();
             }
             // what was seen before cannot be seen again without going through the discharge again
             forget_file(&checkpoint(discharge))?;
-            field::forget(self.folder)?;
+            field::forget(folder)?;
         }
-        if self.keep_fields {
+        if sweep.keep_fields {
             let state = charged.state();
-            FieldSnapshot::of(None, state, None, centre(state)).write(self.folder, 0)?;
+            FieldSnapshot::of(None, state, None, centre(state)).write(folder, 0)?;
         }
         let mut failed: Option<AnalysisError> = None;
         let mut see =
@@ -140,10 +155,10 @@ impl CaseRun<'_> {
                     failed = saved.err();
                 }
             };
-        let mut hooks = RunHooks::new(self.interrupt)
+        let mut hooks = RunHooks::new(interrupt)
             .with_progress(&mut tell)
             .with_samples(&mut see)
-            .with_checkpoint(&checkpoint(discharge), self.checkpoint_seconds);
+            .with_checkpoint(&checkpoint(discharge), sweep.checkpoint_seconds);
         let run = released.discharge(&settings, &mut hooks).map_err(refuse)?;
         if let Some(error) = failed {
             return Err(error);
@@ -152,9 +167,13 @@ impl CaseRun<'_> {
             return Ok(None);
         }
         let row = self.row(&battery, &charged, &run);
-        self.write(&charged, &run, &kept, &row)?;
-        forget_others(self.folder, "")?;
-        Ok(Some(row))
+        let outcome = Outcome {
+            failure: failure(&charged, &run),
+            rows: vec![row],
+        };
+        self.write(&charged, &run, &kept, &outcome)?;
+        forget_checkpoints(folder, "")?;
+        Ok(Some(outcome))
     }
 
     fn keep_field(
@@ -164,8 +183,11 @@ impl CaseRun<'_> {
         state: &NematicState,
         flow: Option<&FlowCoupling>,
     ) -> Result<(), AnalysisError> {
-        if self.keep_fields {
-            FieldSnapshot::of(Some(time), state, flow, centre(state)).write(self.folder, number)?;
+        let Place {
+            folder, settings, ..
+        } = *self.place;
+        if settings.keep_fields {
+            FieldSnapshot::of(Some(time), state, flow, centre(state)).write(folder, number)?;
         }
         Ok(())
     }
@@ -264,9 +286,12 @@ impl CaseRun<'_> {
         charged: &ChargedNematic,
         run: &Discharge,
         kept: &Kept,
-        row: &NematicRow,
+        outcome: &Outcome<NematicRow>,
     ) -> Result<(), AnalysisError> {
-        let folder = self.folder;
+        let Place {
+            folder, settings, ..
+        } = *self.place;
+        let row = &outcome.rows[0];
         let mut all = Kept::default();
         all.keep(None, charged.state(), None);
         all.lines.extend(kept.lines.iter().cloned());
@@ -294,12 +319,13 @@ impl CaseRun<'_> {
             "final_state": run.final_state,
             "discharge": run.record.report,
             "ledger_residual": run.record.report.ledger_residual,
-            "rows": [row],
+            "rows": outcome.rows,
+            "failure": outcome.failure,
             "files": digests(folder, &["lines.csv", "ring.csv", "slices.csv", "series.csv"]),
             "warnings": row.warnings,
             "timings": { "cpu_seconds": row.cpu_seconds },
         });
-        if self.keep_fields {
+        if settings.keep_fields {
             json["n_fields"] = (kept.n_kept + 1).into();
         }
         // written last: a folder with this file is complete
@@ -310,6 +336,15 @@ impl CaseRun<'_> {
             text.as_bytes(),
         )?)
     }
+}
+
+/// Why a run did not come to its end.
+fn failure(charged: &ChargedNematic, run: &Discharge) -> Option<String> {
+    let (charge, stop) = (charged.report(), &run.record.report.stop);
+    if !charge.is_converged() {
+        return Some(format!("charge not converged: {}", charge.stop));
+    }
+    (!stop.is_success()).then(|| format!("discharge stopped: {stop}"))
 }
 
 /// What is to be said of the state that released energy counts down to.
@@ -371,38 +406,6 @@ fn is_unusable_checkpoint(error: &NematicError) -> bool {
     )
 }
 
-fn forget_file(path: &Path) -> Result<(), AnalysisError> {
-    match std::fs::remove_file(path) {
-        Err(source) if source.kind() != std::io::ErrorKind::NotFound => {
-            Err(AnalysisError::Output {
-                path: path.to_owned(),
-                source,
-            })
-        }
-        _ => Ok(()),
-    }
-}
-
-/// Removes checkpoints of other settings, or all when `mark` is empty.
-pub(super) fn forget_others(folder: &Path, mark: &str) -> Result<(), AnalysisError> {
-    let wrong = |source| AnalysisError::Output {
-        path: folder.to_owned(),
-        source,
-    };
-    let Ok(entries) = std::fs::read_dir(folder) else {
-        return Ok(());
-    };
-    for entry in entries {
-        let entry = entry.map_err(wrong)?;
-        let name = entry.file_name().to_string_lossy().into_owned();
-        let ours = !mark.is_empty() && name.ends_with(&format!("-{mark}.checkpoint"));
-        if name.ends_with(".checkpoint") && !ours {
-            std::fs::remove_file(entry.path()).map_err(wrong)?;
-        }
-    }
-    Ok(())
-}
-
 fn sample(s: &topo_nematic::NematicSample) -> NematicSample {
     NematicSample {
         time: s.time,
@@ -420,7 +423,7 @@ fn sample(s: &topo_nematic::NematicSample) -> NematicSample {
 }
 
 /// One line of progress.
-pub(super) fn told(p: &Progress) -> String {
+fn told(p: &Progress) -> String {
     let energy = p.energy.map_or(String::new(), |f| format!(", F {f:.4e}"));
     match p.phase {
         Phase::Charge => format!(

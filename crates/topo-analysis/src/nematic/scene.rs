@@ -9,7 +9,6 @@ use topo_nematic::{
 };
 
 use super::sweep::weight;
-use super::table::NematicRow;
 use crate::AnalysisError;
 use crate::elastic::Preset;
 use crate::wish::{Grant, Load, Measured, Wish, grant};
@@ -161,23 +160,6 @@ impl NematicScene {
     /// Where files with the scene's tables lie below an output folder.
     pub fn results(&self, out: &Path) -> PathBuf {
         out.join(&self.folder)
-    }
-
-    /// A row of a case with its settings only.
-    pub(super) fn blank_row(&self, case: &NematicCase) -> NematicRow {
-        let row = NematicRow {
-            radius: case.nematic.radius,
-            spacing: case.nematic.spacing,
-            q: case.q,
-            boundary: case.nematic.boundary.name().to_owned(),
-            precision: self.accuracy.precision.name().to_owned(),
-            flow: if case.flow.is_some() { "on" } else { "off" }.to_owned(),
-            ..NematicRow::default()
-        };
-        NematicRow {
-            case: row.case_name(),
-            ..row
-        }
     }
 }
 

@@ -1,229 +1,128 @@
-//! A scene's cases, resumable, into one table.
+//! A nematic scene as an experiment.
 
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::path::Path;
 
-use rayon::prelude::*;
-use topo_nematic::{FlowCoupling, NematicBattery, NematicParameters, Progress, Threads};
+use topo_nematic::{FlowCoupling, NematicBattery, NematicParameters, Threads};
 
-use super::case::{self, CaseRun, RESULTS_VERSION, fingerprint, forget_others};
+use super::case::{CaseRun, RESULTS_VERSION, fingerprint};
 use super::field;
 use super::scene::{NematicCase, NematicScene};
 use super::table::NematicRow;
 use crate::AnalysisError;
-use crate::cost::{Cost, Estimate, Speed, Stopwatch, estimate, threads};
-use crate::folder::{Earlier, finished, tell_replaced, writable};
-use crate::progress::{Event, SweepSettings, with_jobs};
-use crate::table::write_table;
+use crate::cost::{Cost, Estimate};
+use crate::folder::Outcome;
+use crate::progress::{Event, SweepSettings};
+use crate::sweep::{self, Experiment, Place, SweepReport};
 use crate::tradeoff::MEASURED;
 
-/// Cases that hold more than this each run one after another, all threads in each.
-const BIG_CASE: u64 = 1 << 30;
+/// What a nematic sweep leaves behind.
+pub type NematicReport = SweepReport<NematicRow>;
 
-/// What a sweep leaves behind.
-#[derive(Debug, Clone)]
-pub struct NematicReport {
-    /// Rows of the table, cases in the order of the scene.
-    pub rows: Vec<NematicRow>,
-    /// Cases computed now.
-    pub n_computed: usize,
-    /// Cases found finished.
-    pub n_reused: usize,
-    /// Whether it was asked to stop before the end.
-    pub interrupted: bool,
-    /// What it was expected to take.
-    pub estimate: Estimate,
-    /// Seconds that its cases took.
-    pub wall_seconds: f64,
+impl Experiment for NematicScene {
+    type Case = NematicCase;
+    type Row = NematicRow;
+    type Start = ();
+
+    const RESULTS: u32 = RESULTS_VERSION;
+
+    fn folder(&self) -> &str {
+        &self.folder
+    }
+
+    fn text(&self) -> String {
+        self.resolved_text()
+    }
+
+    fn cases(&self) -> Result<Vec<NematicCase>, AnalysisError> {
+        Ok(NematicScene::cases(self))
+    }
+
+    fn name(&self, case: &NematicCase) -> String {
+        self.case_name(case)
+    }
+
+    fn fingerprint(&self, case: &NematicCase) -> Result<String, AnalysisError> {
+        Ok(fingerprint(self, case))
+    }
+
+    fn blank_row(&self, case: &NematicCase) -> NematicRow {
+        NematicScene::blank_row(self, case)
+    }
+
+    fn cost(&self, case: &NematicCase, _n_rows: Option<usize>) -> Result<Cost, AnalysisError> {
+        let battery = NematicBattery::new(&case.nematic, &self.accuracy);
+        let battery = battery.map_err(|source| AnalysisError::Nematic {
+            case: self.case_name(case),
+            source,
+        })?;
+        Ok(case_cost(case, &battery))
+    }
+
+    fn uses_all_threads(&self) -> bool {
+        true
+    }
+
+    fn has_all(&self, folder: &Path, settings: &SweepSettings) -> bool {
+        !settings.keep_fields || field::are_kept(folder)
+    }
+
+    fn prepare(
+        &self,
+        _todo: &[&NematicCase],
+        _settings: &SweepSettings,
+        _progress: &(dyn Fn(Event<'_>) + Sync),
+    ) -> Result<(), AnalysisError> {
+        Ok(())
+    }
+
+    fn run(
+        &self,
+        case: &NematicCase,
+        _start: &(),
+        place: &Place<'_>,
+    ) -> Result<Option<Outcome<NematicRow>>, AnalysisError> {
+        let threads = if place.is_alone {
+            Threads::All
+        } else {
+            Threads::One
+        };
+        CaseRun {
+            scene: self,
+            case,
+            place,
+            threads,
+        }
+        .run()
+    }
 }
 
 /// Runs all cases of a scene; what an earlier run finished with the same settings is kept, and a case that was interrupted or
 /// killed goes on from its last checkpoint.
 ///
-/// Each case writes its own folder and is complete when its `run.json` is there; `nematic/sweep.csv` is written at the end, also
-/// after an interrupt, from what is finished, whichever shard computed it. Results do not depend on the number of jobs.
+/// Each case writes its own folder and is complete when its `run.json` is there; `sweep.csv`, and `failed.csv` where a case failed,
+/// are written at the end, also after an interrupt, from what is finished, whichever shard computed it. Results do not depend on
+/// the number of jobs.
 ///
 /// # Errors
-/// Parameters that make no sense, a grid that does not fit in memory, or files that cannot be written; all cases are looked at
-/// before the first is computed. A run that stops early is no error: its row carries the reason.
+/// Parameters that make no sense, a grid that does not fit in memory, a folder with the results of another scene, or files that
+/// cannot be written; all cases are looked at before the first is computed. A case that fails is no error: it is in the report.
 pub fn run_nematic_sweep(
     scene: &NematicScene,
     settings: &SweepSettings,
     progress: &(dyn Fn(Event<'_>) + Sync),
 ) -> Result<NematicReport, AnalysisError> {
-    let folder = scene.results(&settings.out);
-    writable(&folder)?;
-    let cases = scene.cases();
-    let name = |case: &NematicCase| scene.blank_row(case).case_name();
-    let Plan {
-        found,
-        todo,
-        together,
-        estimate,
-    } = plan(scene, settings, &cases)?;
-    for (k, case) in cases.iter().enumerate() {
-        if settings.fresh && settings.takes(k) {
-            forget_others(&folder.join(name(case)), "")?;
-        }
-    }
-    let n_reused = found.iter().filter(|f| f.is_finished()).count();
-    let n_todo = estimate.n_cases;
-    progress(Event::Begin {
-        n_cases: n_todo + n_reused,
-        n_reused,
-        estimate: &estimate,
-    });
-    tell_replaced(
-        cases
-            .iter()
-            .map(name)
-            .zip(found.iter().map(Earlier::reason)),
-        progress,
-    );
-    let each = if together { Threads::One } else { Threads::All };
-    let n_done = AtomicUsize::new(n_reused);
-    let one = |(case, todo): (&NematicCase, bool)| -> Result<_, AnalysisError> {
-        if !todo || settings.interrupt.is_requested() {
-            return Ok(None);
-        }
-        let name = name(case);
-        let told = |p: &Progress| {
-            progress(Event::Working {
-                name: &name,
-                what: &case::told(p),
-            });
-        };
-        let damaged = || {
-            progress(Event::Replaced {
-                names: std::slice::from_ref(&name),
-                reason: "its checkpoint is damaged",
-            });
-        };
-        let run = CaseRun {
-            scene,
-            case,
-            folder: &folder.join(&name),
-            interrupt: &settings.interrupt,
-            threads: each,
-            keep_fields: settings.keep_fields,
-            checkpoint_seconds: settings.checkpoint_seconds,
-            damaged: &damaged,
-            told: &told,
-        };
-        let row = run.run()?;
-        if let Some(row) = &row {
-            progress(Event::Case {
-                name: &name,
-                n_done: n_done.fetch_add(1, Ordering::Relaxed) + 1,
-                warnings: &row.warnings,
-            });
-        }
-        Ok(row)
-    };
-    let mut order: Vec<usize> = (0..cases.len()).collect();
-    if together {
-        // strong charges take longest: they go first, so that no thread waits for them at the end
-        order.sort_by_key(|&k| (cases[k].flow.is_none(), std::cmp::Reverse(cases[k].q)));
-    }
-    let clock = Stopwatch::start();
-    let mut computed: Vec<(usize, Option<NematicRow>)> = with_jobs(settings.jobs, || {
-        let of = |&k: &usize| Ok((k, one((&cases[k], todo[k]))?));
-        if together {
-            order.par_iter().with_max_len(1).map(of).collect()
-        } else {
-            order.iter().map(of).collect::<Result<_, AnalysisError>>()
-        }
-    })??;
-    let wall_seconds = clock.seconds();
-    computed.sort_by_key(|c| c.0);
-    let n_computed = computed.iter().filter(|c| c.1.is_some()).count();
-    let rows: Vec<NematicRow> = found
-        .into_iter()
-        .zip(computed)
-        .filter_map(|(f, (_, c))| f.rows().and_then(|rows| rows.into_iter().next()).or(c))
-        .collect();
-    write_table(&folder.join("sweep.csv"), &rows)?;
-    Ok(NematicReport {
-        interrupted: settings.interrupt.is_requested() && n_computed < n_todo,
-        rows,
-        n_computed,
-        n_reused,
-        estimate,
-        wall_seconds,
-    })
+    sweep::run(scene, settings, progress)
 }
 
 /// What [`run_nematic_sweep`] is expected to take for what is not finished; a case that was begun counts in full.
 ///
 /// # Errors
-/// Parameters that make no sense, or a grid that does not fit in memory.
+/// Parameters that make no sense, a grid that does not fit in memory, or a folder with the results of another scene.
 pub fn estimate_nematic_sweep(
     scene: &NematicScene,
     settings: &SweepSettings,
 ) -> Result<Estimate, AnalysisError> {
-    Ok(plan(scene, settings, &scene.cases())?.estimate)
-}
-
-/// What is left of the cases of a scene, which are computed now, and how.
-struct Plan {
-    found: Vec<Earlier<NematicRow>>,
-    todo: Vec<bool>,
-    /// Whether cases run side by side.
-    together: bool,
-    estimate: Estimate,
-}
-
-fn plan(
-    scene: &NematicScene,
-    settings: &SweepSettings,
-    cases: &[NematicCase],
-) -> Result<Plan, AnalysisError> {
-    let folder = scene.results(&settings.out);
-    let name = |case: &NematicCase| scene.blank_row(case).case_name();
-    let mut found: Vec<Earlier<NematicRow>> = Vec::with_capacity(cases.len());
-    for (k, case) in cases.iter().enumerate() {
-        let place = folder.join(name(case));
-        let usable = !(settings.fresh && settings.takes(k))
-            && (!settings.keep_fields || field::are_kept(&place));
-        found.push(if usable {
-            finished(&place, &fingerprint(scene, case), RESULTS_VERSION)
-        } else {
-            Earlier::None
-        });
-    }
-    let todo: Vec<bool> = (0..cases.len())
-        .map(|k| !found[k].is_finished() && settings.takes(k))
-        .collect();
-    let (mut costs, mut taken) = (Vec::new(), Vec::new());
-    for ((case, found), todo) in cases.iter().zip(&found).zip(&todo) {
-        if !todo && !found.is_finished() {
-            continue;
-        }
-        let battery = NematicBattery::new(&case.nematic, &scene.accuracy).map_err(|source| {
-            AnalysisError::Nematic {
-                case: name(case),
-                source,
-            }
-        })?;
-        let cost = case_cost(case, &battery);
-        match found {
-            Earlier::Finished(rows) => {
-                let seconds = rows.iter().map(|r| r.cpu_seconds).sum();
-                taken.push((cost.seconds, seconds));
-            }
-            _ => costs.push(cost),
-        }
-    }
-    let largest = costs.iter().map(|c| c.bytes).max().unwrap_or(0);
-    let together = largest <= BIG_CASE && costs.len() > 1;
-    // with all threads in a case, its own seconds are not those of all threads
-    let speed = Speed::of(if together { &taken } else { &[] });
-    let estimate = estimate(&costs, speed, threads(settings.jobs), together);
-    Ok(Plan {
-        found,
-        todo,
-        together,
-        estimate,
-    })
+    sweep::estimate(scene, settings)
 }
 
 /// Cost of a charge with its discharge, as measured for q = 1 to 12 at radii 15, 25 and 52.5.
@@ -259,7 +158,7 @@ pub(super) fn weight(scene: &NematicScene) -> Result<f64, AnalysisError> {
     let cost = |case: &NematicCase| -> Result<f64, AnalysisError> {
         let battery = NematicBattery::new(&case.nematic, &scene.accuracy);
         let battery = battery.map_err(|source| AnalysisError::Nematic {
-            case: scene.blank_row(case).case_name(),
+            case: scene.case_name(case),
             source,
         })?;
         Ok(case_cost(case, &battery).seconds)
@@ -319,10 +218,7 @@ mod tests {
                 .all(|r| r.t50.is_some() && r.stokes_updates == 0)
         );
         assert!(first.rows[1].f_charged > first.rows[0].f_charged);
-        let case = folder
-            .path()
-            .join("nematic")
-            .join(first.rows[0].case_name());
+        let case = folder.path().join(&scene.folder).join(&first.rows[0].case);
         let read = |file: &str| std::fs::read(case.join(file)).unwrap();
         let slices = read("slices.csv");
         let again = run(2);
@@ -396,7 +292,7 @@ mod tests {
         };
         for damaged in ["charge-", "discharge-", "snapshots-"] {
             stop_in("discharging: step 4");
-            let case = torn.path().join("nematic").join(calm.rows[1].case_name());
+            let case = torn.path().join(&scene.folder).join(&calm.rows[1].case);
             let mut n_found = 0;
             for entry in std::fs::read_dir(&case).unwrap() {
                 let path = entry.unwrap().path();
@@ -416,7 +312,7 @@ mod tests {
             .unwrap();
             assert_eq!(timeless(&mended), timeless(&calm));
             assert_eq!(told.into_inner().unwrap(), ["its checkpoint is damaged"]);
-            std::fs::remove_dir_all(torn.path().join("nematic")).unwrap();
+            std::fs::remove_dir_all(torn.path().join(&scene.folder)).unwrap();
         }
     }
 

@@ -20,6 +20,54 @@ pub struct NematicRow {
     pub precision: String,
     /// Whether the fluid flows: off or on.
     pub flow: String,
+    /// What the particle's surface prefers: charge (of winding q), homeotropic, planar, uniform or table; none without a particle.
+    #[serde(default)]
+    pub pattern: String,
+    /// How strongly: strong, free, or the strength W in L/ξ_N.
+    #[serde(default)]
+    pub anchoring: String,
+    /// Edge of the cell along x.
+    #[serde(default)]
+    pub cell_x: f64,
+    /// Same along y.
+    #[serde(default)]
+    pub cell_y: f64,
+    /// Same along z, the distance of the plates.
+    #[serde(default)]
+    pub cell_z: f64,
+    /// A, in L/ξ_N².
+    #[serde(default)]
+    pub a: f64,
+    /// B, in L/ξ_N².
+    #[serde(default)]
+    pub b: f64,
+    /// C, in L/ξ_N².
+    #[serde(default)]
+    pub c: f64,
+    /// Elastic constant L.
+    #[serde(default)]
+    pub elastic_constant: f64,
+    /// Second elastic constant L_2; empty where none is modelled.
+    #[serde(default)]
+    pub second_elastic_constant: Option<f64>,
+    /// Rotational mobility Γ.
+    #[serde(default)]
+    pub rotational_mobility: f64,
+    /// Flow alignment χ.
+    #[serde(default)]
+    pub flow_alignment: f64,
+    /// Isotropic viscosity η, in 1/Γ.
+    #[serde(default)]
+    pub viscosity: f64,
+    /// Order S at surfaces; empty: that of equilibrium.
+    #[serde(default)]
+    pub surface_order: Option<f64>,
+    /// Anisotropy of the external field; empty where none is modelled.
+    #[serde(default)]
+    pub field_anisotropy: Option<f64>,
+    /// Local error aimed at.
+    #[serde(default)]
+    pub tolerance: f64,
     /// Free energy after charging.
     pub f_charged: f64,
     /// Free energy just after the switch.
@@ -77,14 +125,6 @@ pub struct NematicRow {
 pub(super) const BUCKLED: f64 = 0.01;
 
 impl NematicRow {
-    /// Folder of the case, unique within a sweep.
-    pub fn case_name(&self) -> String {
-        format!(
-            "q{:02}_r{}_h{}_{}_{}_flow-{}",
-            self.q, self.radius, self.spacing, self.boundary, self.precision, self.flow
-        )
-    }
-
     /// Whether the ring is buckled; symmetry makes the order parameter zero below, to the residual of the charge.
     pub fn is_buckled(&self) -> bool {
         self.order_parameter > BUCKLED
@@ -194,7 +234,7 @@ mod tests {
                 .lines()
                 .next()
                 .unwrap(),
-            "case,radius,spacing,q,boundary,precision,flow,f_charged,f_after_switch,f_final,order_parameter,lowest_eigenvalue,state,ring_radius,ring_mode,ring_amplitude,t50,t90,t99,t999,t50_charged,t90_charged,t99_charged,t999_charged,late_rate,steps,evaluations,stokes_updates,stokes_iterations,cpu_seconds,peak_bytes,warnings"
+            "case,radius,spacing,q,boundary,precision,flow,pattern,anchoring,cell_x,cell_y,cell_z,a,b,c,elastic_constant,second_elastic_constant,rotational_mobility,flow_alignment,viscosity,surface_order,field_anisotropy,tolerance,f_charged,f_after_switch,f_final,order_parameter,lowest_eigenvalue,state,ring_radius,ring_mode,ring_amplitude,t50,t90,t99,t999,t50_charged,t90_charged,t99_charged,t999_charged,late_rate,steps,evaluations,stokes_updates,stokes_iterations,cpu_seconds,peak_bytes,warnings"
         );
     }
 }

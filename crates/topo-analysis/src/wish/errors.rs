@@ -68,7 +68,7 @@ pub fn errors_of_colloids(
         let ratio = beside.map_or(grant.point.ratio(), |r| r.spacing / row.spacing);
         let told = told(&[(row.t999, coarser)], ratio);
         ErrorRow {
-            case: row.case_name(),
+            case: row.case.clone(),
             cut: None,
             quantity: "t99.9".to_owned(),
             result: row.t999,

@@ -21,7 +21,7 @@ fn flat_rings_below_the_buckling() {
 
 /// Writes the charged ring of a case: its height over the equator and its angles.
 fn ring(folder: &Path, row: &NematicRow, height: f64, angles: &[f64]) {
-    let case = folder.join(row.case_name());
+    let case = folder.join(&row.case);
     std::fs::create_dir_all(&case).unwrap();
     let point = |a: &f64| LinePoint {
         closed: true,

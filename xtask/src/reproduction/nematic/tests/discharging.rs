@@ -7,7 +7,7 @@ use topo_analysis::{NematicRow, NematicSample, write_table};
 
 /// Writes the time series of a case: radius of the ring over that of the particle, and correlation of the flow.
 fn series(folder: &Path, row: &NematicRow, samples: &[(Option<f64>, Option<f64>)]) {
-    let case = folder.join(row.case_name());
+    let case = folder.join(&row.case);
     std::fs::create_dir_all(&case).unwrap();
     let sample = |(k, (ring, flow)): (usize, &(Option<f64>, Option<f64>))| NematicSample {
         time: k as f64,

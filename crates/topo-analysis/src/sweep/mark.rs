@@ -1,0 +1,131 @@
+//! Whose results a folder holds: the scene written out beside its table, and the refusal of another one.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use serde_json::Value;
+use topo_core::write_atomic_bytes;
+
+use super::name::differences;
+use crate::AnalysisError;
+use crate::folder::{Left, left_of};
+
+/// The scene of a folder, every value written out.
+const SCENE: &str = "scene.toml";
+/// Most keys that a refusal names.
+const MOST_KEYS: usize = 4;
+/// Longest value that a refusal shows.
+const LONGEST: usize = 60;
+
+/// Refuses a folder with finished cases that are none of this scene's; `known` are names and fingerprints of its cases.
+///
+/// More cases may be added to a scene: what is finished stays. Cases of its own that another results version computed are no
+/// reason either, they are computed again.
+pub(super) fn check(
+    folder: &Path,
+    text: &str,
+    known: &[(String, String)],
+    version: u32,
+) -> Result<(), AnalysisError> {
+    let Ok(entries) = std::fs::read_dir(folder) else {
+        return Ok(());
+    };
+    let own: BTreeSet<(&str, &str)> = known
+        .iter()
+        .map(|(n, f)| (n.as_str(), f.as_str()))
+        .collect();
+    let names: BTreeSet<&str> = known.iter().map(|(n, _)| n.as_str()).collect();
+    let mut foreign: Vec<(String, Left)> = Vec::new();
+    for entry in entries.flatten() {
+        let name = entry.file_name().to_string_lossy().into_owned();
+        let Some(left) = left_of(&entry.path()) else {
+            continue;
+        };
+        let is_own = match &left {
+            Left::Damaged => names.contains(name.as_str()),
+            Left::Case { results, .. } if *results != Some(version) => {
+                names.contains(name.as_str())
+            }
+            Left::Case { fingerprint, .. } => own.contains(&(name.as_str(), fingerprint.as_str())),
+        };
+        if !is_own {
+            foreign.push((name, left));
+        }
+    }
+    if foreign.is_empty() {
+        return Ok(());
+    }
+    foreign.sort_by(|a, b| a.0.cmp(&b.0));
+    Err(AnalysisError::OtherScene {
+        folder: folder.to_owned(),
+        why: why(folder, text, &foreign, version),
+    })
+}
+
+/// What differs: keys of the scene where the folder has one, else the first case that is not of it.
+fn why(folder: &Path, text: &str, foreign: &[(String, Left)], version: u32) -> String {
+    let here = values(text);
+    let there = std::fs::read_to_string(folder.join(SCENE)).map_or(Value::Null, |t| values(&t));
+    let mut changed = Vec::new();
+    if there.is_object() {
+        differences("", Some(&there), Some(&here), &mut changed);
+    }
+    let said = |key: &str, of: &Value| {
+        let pointer = format!("/{}", key.replace('.', "/"));
+        of.pointer(&pointer).map_or("nothing".to_owned(), shortened)
+    };
+    if changed.is_empty() {
+        let (name, left) = &foreign[0];
+        let n = foreign.len();
+        let cases = if n == 1 { "case" } else { "cases" };
+        return match left {
+            Left::Case {
+                results: Some(r), ..
+            } if *r != version => {
+                format!("{n} {cases} of results version {r} (now {version}), such as {name}")
+            }
+            _ => format!("{n} {cases} that this scene has not, such as {name}"),
+        };
+    }
+    let mut keys: Vec<String> = changed
+        .iter()
+        .take(MOST_KEYS)
+        .map(|(key, _)| {
+            format!(
+                "{key} = {} there, {} here",
+                said(key, &there),
+                said(key, &here)
+            )
+        })
+        .collect();
+    if changed.len() > MOST_KEYS {
+        keys.push(format!("{} more keys", changed.len() - MOST_KEYS));
+    }
+    keys.join("; ")
+}
+
+/// A scene's text as nested values.
+fn values(text: &str) -> Value {
+    let table: Result<toml::Table, _> = toml::from_str(text);
+    table.map_or(Value::Null, |t| {
+        serde_json::to_value(t).unwrap_or(Value::Null)
+    })
+}
+
+fn shortened(value: &Value) -> String {
+    let text = value.to_string();
+    if text.chars().count() <= LONGEST {
+        return text;
+    }
+    let start: String = text.chars().take(LONGEST).collect();
+    format!("{start}...")
+}
+
+/// Writes the scene beside its table.
+pub(super) fn write(folder: &Path, text: &str) -> Result<(), AnalysisError> {
+    let path = folder.join(SCENE);
+    if std::fs::read_to_string(&path).is_ok_and(|there| there == text) {
+        return Ok(());
+    }
+    Ok(write_atomic_bytes(&path, text.as_bytes())?)
+}
