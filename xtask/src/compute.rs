@@ -60,7 +60,7 @@ pub fn tables(
         .insert("Edges".to_owned(), scene.rod.n_edges.to_string());
     provenance
         .presets
-        .insert("Cuts".to_owned(), String::from(scene.cuts));
+        .insert("Cuts".to_owned(), String::from(scene.cuts.clone()));
     provenance
         .presets
         .insert("Seed".to_owned(), scene.seed.to_string());
@@ -258,7 +258,7 @@ fn elastic_scene(
             remedy,
         })?;
     }
-    let table = KnotTable::builtin();
+    let table = scene.knot_table(None)?;
     let (scene, grant) = scene.granted(&table, settings.jobs)?;
     if let Some(grant) = &grant {
         by_wish::tell_grant(grant, "edges");
@@ -287,7 +287,7 @@ fn elastic_scene(
     }
     tell_taken(&report.estimate, report.wall_seconds);
     if let Some(grant) = &grant {
-        let check = scene.check_of(grant, &report.rows);
+        let check = scene.check_of(&table, grant, &report.rows)?;
         let coarser = sweep(&check, &table, settings)?;
         let rows = errors_of_rods(grant, &report.rows, &coarser.rows);
         by_wish::tell_errors(grant, &rows, &scene.results(&settings.out))?;

@@ -205,11 +205,12 @@ fn cost(
 fn case_cost(scene: &ElasticScene, n_cuts: Option<usize>) -> Cost {
     let edges = scene.rod.n_edges as f64 / 200.0;
     let tolerance = (1e-3 / scene.accuracy.tolerance.max(1e-9)).max(1e-3);
-    let n_cuts = match (n_cuts, scene.cuts) {
+    let n_cuts = match (n_cuts, &scene.cuts) {
         (Some(n), _) => n as f64,
         (None, Cuts::Argmax) => 1.0,
         (None, Cuts::NearTies) => MEAN_NEAR_TIES,
-        (None, Cuts::All(k)) => k as f64,
+        (None, Cuts::All(k)) => *k as f64,
+        (None, Cuts::At(places)) => places.len() as f64,
     };
     let one = edges.powf(EDGES_POWER) * tolerance.powf(TOLERANCE_POWER);
     Cost {
@@ -238,7 +239,7 @@ const TOLERANCE_POWER: f64 = 0.25;
 /// Near-tied cuts of a case, on average over the published sweep.
 const MEAN_NEAR_TIES: f64 = 4.5;
 /// Bytes that a case holds at N = 200.
-const BYTES: f64 = 6e7;
+pub(super) const BYTES: f64 = 6e7;
 
 #[cfg(test)]
 mod tests {
@@ -273,7 +274,7 @@ mod tests {
             (first.n_computed, first.n_reused, first.rows.len()),
             (2, 0, 2)
         );
-        let results = folder.path().join("elastic");
+        let results = folder.path().join("scene");
         let read = |file: &str| std::fs::read(results.join(file)).unwrap();
         let series = read("3_1_twist+0.00_shrunk_n60/series.csv");
         let again = run_sweep(&scene, &table, &settings(folder.path(), 2), &|_| {}).unwrap();
@@ -308,7 +309,7 @@ mod tests {
         };
         let (first, told) = sweep(&scene);
         assert!(told.is_empty());
-        let case = folder.path().join("elastic/3_1_twist+0.00_shrunk_n60");
+        let case = folder.path().join("scene/3_1_twist+0.00_shrunk_n60");
         let mark = case.join("run.json");
         let text = std::fs::read_to_string(&mark).unwrap();
         let version = format!("\"results\": {RESULTS_VERSION}");
@@ -377,9 +378,9 @@ mod tests {
             let report = run_sweep(&scene, &table, &part, &|_| {}).unwrap();
             assert!(report.n_computed == 1 && report.rows.len() == 1 && !report.interrupted);
             let name = scene.cases(&table).unwrap()[usize::from(shard == "2/2")].name();
-            let to = merged.path().join("elastic").join(&name);
+            let to = merged.path().join("scene").join(&name);
             std::fs::create_dir_all(&to).unwrap();
-            for file in std::fs::read_dir(elsewhere.path().join("elastic").join(&name)).unwrap() {
+            for file in std::fs::read_dir(elsewhere.path().join("scene").join(&name)).unwrap() {
                 let file = file.unwrap();
                 std::fs::copy(file.path(), to.join(file.file_name())).unwrap();
             }
@@ -426,7 +427,7 @@ mod tests {
         settings.interrupt.request();
         let report = run_sweep(&scene, &table, &settings, &|_| {}).unwrap();
         assert!(report.interrupted && report.rows.is_empty());
-        let entries: Vec<_> = std::fs::read_dir(folder.path().join("elastic"))
+        let entries: Vec<_> = std::fs::read_dir(folder.path().join("scene"))
             .unwrap()
             .collect();
         assert_eq!(entries.len(), 1, "only the table");

@@ -319,10 +319,7 @@ mod tests {
                 .all(|r| r.t50.is_some() && r.stokes_updates == 0)
         );
         assert!(first.rows[1].f_charged > first.rows[0].f_charged);
-        let case = folder
-            .path()
-            .join("nematic")
-            .join(first.rows[0].case_name());
+        let case = folder.path().join("scene").join(first.rows[0].case_name());
         let read = |file: &str| std::fs::read(case.join(file)).unwrap();
         let slices = read("slices.csv");
         let again = run(2);
@@ -396,7 +393,7 @@ mod tests {
         };
         for damaged in ["charge-", "discharge-", "snapshots-"] {
             stop_in("discharging: step 4");
-            let case = torn.path().join("nematic").join(calm.rows[1].case_name());
+            let case = torn.path().join("scene").join(calm.rows[1].case_name());
             let mut n_found = 0;
             for entry in std::fs::read_dir(&case).unwrap() {
                 let path = entry.unwrap().path();
@@ -416,7 +413,7 @@ mod tests {
             .unwrap();
             assert_eq!(timeless(&mended), timeless(&calm));
             assert_eq!(told.into_inner().unwrap(), ["its checkpoint is damaged"]);
-            std::fs::remove_dir_all(torn.path().join("nematic")).unwrap();
+            std::fs::remove_dir_all(torn.path().join("scene")).unwrap();
         }
     }
 
