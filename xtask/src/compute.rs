@@ -15,8 +15,8 @@ pub use report::Failures;
 use std::path::Path;
 use std::time::Instant;
 use topo_analysis::{
-    AnalysisError, ElasticScene, Event, NematicScene, Preset, Scene, Shard, SweepSettings, Wish,
-    tight_shapes, with_jobs, write_knots,
+    AnalysisError, ElasticScene, Event, NematicScene, OwnKnots, Preset, Scene, Shard,
+    SweepSettings, Wish, tight_shapes, with_jobs, write_knots,
 };
 use topo_core::Interrupt;
 use topo_knots::{KnotTable, TightenSettings};
@@ -64,7 +64,7 @@ pub fn tables(
         .insert("Edges".to_owned(), scene.rod.n_edges.to_string());
     provenance
         .presets
-        .insert("Cuts".to_owned(), String::from(scene.cuts));
+        .insert("Cuts".to_owned(), String::from(scene.cuts.clone()));
     provenance
         .presets
         .insert("Seed".to_owned(), scene.seed.to_string());
@@ -183,7 +183,10 @@ pub fn scene(
         )),
         Scene::Elastic(mut scene) => {
             scene.wish = wish.or(scene.wish);
-            elastic::scene(*scene, cuts, &knot_table(knots)?, settings)
+            if let Some(folder) = knots {
+                scene.own_knots = Some(OwnKnots::at(folder));
+            }
+            elastic::scene(*scene, cuts, settings)
         }
         Scene::Nematic(_) if knots.is_some() => Err(refused(
             "--knots",
@@ -202,15 +205,6 @@ pub fn scene(
             )),
         },
     }
-}
-
-/// The built-in knots with those of a folder.
-pub fn knot_table(folder: Option<&Path>) -> Result<KnotTable, XtaskError> {
-    let table = KnotTable::builtin();
-    Ok(match folder {
-        Some(folder) => table.with_folder(folder)?,
-        None => table,
-    })
 }
 
 pub fn preset(quality: Quality) -> Preset {

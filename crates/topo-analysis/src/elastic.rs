@@ -2,10 +2,12 @@
 
 mod accuracy;
 mod case;
+mod check;
 mod choices;
 mod file;
 mod frames;
 mod imperfection;
+mod keys;
 mod name;
 mod record;
 mod resonance;
@@ -21,6 +23,6 @@ pub use choices::{Cuts, NEAR_TIE, Names, Numbers, Preset};
 pub use frames::{ShapeFrame, discharge_frames};
 pub use imperfection::perturbed;
 pub use resonance::{Ensemble, Regime, Resonance, crossover, ensembles, regime, resonances};
-pub use scene::{ElasticCase, ElasticScene};
+pub use scene::{ElasticCase, ElasticScene, OwnKnots};
 pub use sweep::{ElasticReport, estimate_sweep, run_sweep};
 pub use variants::{Purpose, Variant};

@@ -1,6 +1,6 @@
 //! What can go wrong between a scene and its tables.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
@@ -25,16 +25,26 @@ pub enum AnalysisError {
         message: String,
     },
     /// A value of a scene is out of range.
-    #[error("{path}: {key} = {value} is not possible: {remedy}")]
+    #[error("{}: {key} = {value} is not possible: {remedy}", place(.path, *.line))]
     SceneValue {
         /// The file.
         path: PathBuf,
+        /// Line of the key, or of the table that it would stand in.
+        line: Option<usize>,
         /// Key with its table.
         key: String,
         /// What was written.
         value: String,
         /// What would be right.
         remedy: String,
+    },
+    /// The name of a scene's file names no folder for its results.
+    #[error("{}: {reason}: rename the file, its results go to a folder of its name", .path.display())]
+    SceneName {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        reason: String,
     },
     /// No measured setting grants what a scene asks for.
     #[error("{wish} cannot be had: {reason}")]
@@ -120,5 +130,12 @@ impl AnalysisError {
             Self::Nematic { source, .. } => !matches!(source, topo_nematic::NematicError::File(_)),
             _ => false,
         }
+    }
+}
+
+fn place(path: &Path, line: Option<usize>) -> String {
+    match line {
+        Some(line) => format!("{}, line {line}", path.display()),
+        None => path.display().to_string(),
     }
 }

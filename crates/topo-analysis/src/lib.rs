@@ -29,9 +29,9 @@ mod wish;
 pub use cost::Estimate;
 pub use elastic::{
     ACCURACY_CASES, AccuracyRow, Cuts, ElasticCase, ElasticReport, ElasticScene, Ensemble,
-    NEAR_TIE, Names, Numbers, Preset, Purpose, RESULTS_VERSION, Regime, Resonance, ShapeFrame,
-    Variant, crossover, discharge_frames, ensembles, estimate_sweep, measure_accuracy, perturbed,
-    reference_scene, regime, resonances, run_sweep,
+    NEAR_TIE, Names, Numbers, OwnKnots, Preset, Purpose, RESULTS_VERSION, Regime, Resonance,
+    ShapeFrame, Variant, crossover, discharge_frames, ensembles, estimate_sweep, measure_accuracy,
+    perturbed, reference_scene, regime, resonances, run_sweep,
 };
 pub use error::AnalysisError;
 pub use folder::writable;
@@ -43,7 +43,7 @@ pub use nematic::{
     nematic_frames, nematic_resonance, resonance_peak, run_nematic_sweep,
 };
 pub use progress::{Event, Shard, SweepSettings, with_jobs};
-pub use scene::Scene;
+pub use scene::{Axis, AxisValue, Scene};
 pub use stability::{StabilityRow, n_extremes, stability};
 pub use statistics::{Spread, median, quantile, standard_deviation};
 pub use sweep::{FailedCase, SweepReport};

@@ -1,9 +1,11 @@
 //! Nematic scenes: colloids, charged, switched and followed; their tables and what these say.
 
 mod case;
+mod check;
 mod field;
 mod file;
 mod frames;
+mod keys;
 mod late;
 mod name;
 mod onset;

@@ -98,6 +98,27 @@ pub struct SweepRow {
 }
 
 impl SweepRow {
+    /// Whether two rows are of one charged state, whatever their resolution.
+    pub fn is_same_state(&self, other: &Self) -> bool {
+        let settings = |r: &Self| {
+            (
+                r.knot.clone(),
+                r.reading.clone(),
+                [
+                    r.twist,
+                    r.slenderness,
+                    r.twist_ratio,
+                    r.stretch_ratio,
+                    r.imperfection,
+                ],
+                [r.contact_stiffness, r.friction_ratio],
+                r.friction_range.clone(),
+                r.seed,
+            )
+        };
+        settings(self) == settings(other)
+    }
+
     /// t50, t90, t95 and t99.
     pub fn times(&self) -> [Option<f64>; 4] {
         [self.t50, self.t90, self.t95, self.t99]

@@ -79,6 +79,17 @@ impl KnotTable {
         TABLE.clone()
     }
 
+    /// The built-in table with the knots of a folder.
+    ///
+    /// # Errors
+    /// As [`with_folder`](Self::with_folder).
+    pub fn builtin_and(folder: Option<&Path>) -> Result<Self, KnotError> {
+        match folder {
+            Some(folder) => Self::builtin().with_folder(folder),
+            None => Ok(Self::builtin()),
+        }
+    }
+
     /// The built-in table, read from its files.
     fn embedded() -> Self {
         let mut table = Self {

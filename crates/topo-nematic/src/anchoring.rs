@@ -67,7 +67,7 @@ pub struct DirectorTable {
 }
 
 impl DirectorTable {
-    fn check(&self) -> Result<(), NematicError> {
+    fn check(&self, name: &str) -> Result<(), NematicError> {
         let expected = self.n_polar.saturating_mul(self.n_azimuth);
         if self.n_polar < 2 || self.n_azimuth < 1 || self.directors.len() != expected {
             return Err(NematicError::Length {
@@ -77,7 +77,7 @@ impl DirectorTable {
             });
         }
         for d in &self.directors {
-            unit("anchoring.table", *d)?;
+            unit(&format!("{name}.table.directors"), *d)?;
         }
         Ok(())
     }
@@ -131,15 +131,15 @@ pub enum SurfacePattern {
 }
 
 impl SurfacePattern {
-    /// The pattern, if it makes sense.
+    /// Checks the pattern; `name` is the key that holds it.
     ///
     /// # Errors
     /// A vector without direction, a table of the wrong length, a charge beyond ±10 000.
-    pub fn checked(self) -> Result<Self, NematicError> {
-        match &self {
+    pub fn check(&self, name: &str) -> Result<(), NematicError> {
+        match self {
             Self::Charge(q) if q.unsigned_abs() > LARGEST_CHARGE.unsigned_abs() => {
                 return Err(InvalidValue::new(
-                    "anchoring.charge",
+                    format!("{name}.charge"),
                     f64::from(*q),
                     format!("at most {LARGEST_CHARGE} turns"),
                 )
@@ -147,14 +147,14 @@ impl SurfacePattern {
             }
             Self::Charge(_) | Self::Homeotropic => {}
             Self::Planar { axis } => {
-                unit("anchoring.planar.axis", *axis)?;
+                unit(&format!("{name}.planar.axis"), *axis)?;
             }
             Self::Uniform { director } => {
-                unit("anchoring.uniform.director", *director)?;
+                unit(&format!("{name}.uniform.director"), *director)?;
             }
-            Self::Table(table) => table.check()?,
+            Self::Table(table) => table.check(name)?,
         }
-        Ok(self)
+        Ok(())
     }
 
     /// Turns of the pattern along the equator.
@@ -333,9 +333,8 @@ mod tests {
             n_polar: n_polar as usize,
             n_azimuth: n_azimuth as usize,
             directors,
-        })
-        .checked()
-        .unwrap();
+        });
+        table.check("p").unwrap();
         for d in [
             [0.3, 0.4, 0.5],
             [-0.7, 0.1, -0.2],
@@ -360,18 +359,22 @@ mod tests {
     #[test]
     fn broken_patterns_are_refused() {
         for bad in [[0.0; 3], [f64::NAN, 0.0, 1.0], [f64::INFINITY, 0.0, 0.0]] {
-            assert!(SurfacePattern::Planar { axis: bad }.checked().is_err());
-            assert!(SurfacePattern::Uniform { director: bad }.checked().is_err());
+            assert!(SurfacePattern::Planar { axis: bad }.check("p").is_err());
+            assert!(
+                SurfacePattern::Uniform { director: bad }
+                    .check("p")
+                    .is_err()
+            );
         }
-        assert!(SurfacePattern::Charge(i32::MIN).checked().is_err());
-        assert!(SurfacePattern::Charge(-7).checked().is_ok());
+        assert!(SurfacePattern::Charge(i32::MIN).check("p").is_err());
+        assert!(SurfacePattern::Charge(-7).check("p").is_ok());
         let table = |n_polar, n_azimuth, n: usize| {
             SurfacePattern::Table(DirectorTable {
                 n_polar,
                 n_azimuth,
                 directors: vec![[0.0, 0.0, 1.0]; n],
             })
-            .checked()
+            .check("p")
         };
         assert!(table(2, 1, 2).is_ok());
         assert!(

@@ -68,15 +68,15 @@ impl Material {
         finite("material.a", self.a)?;
         finite("material.b", self.b)?;
         positive("material.c", self.c)?;
-        positive("material.elastic-constant", self.elastic_constant)?;
-        positive("material.rotational-mobility", self.rotational_mobility)?;
-        finite("material.flow-alignment", self.flow_alignment)?;
+        positive("material.elastic_constant", self.elastic_constant)?;
+        positive("material.rotational_mobility", self.rotational_mobility)?;
+        finite("material.flow_alignment", self.flow_alignment)?;
         positive("material.viscosity", self.viscosity)?;
         if let Some(second) = self.second_elastic_constant {
             let least = -0.6 * self.elastic_constant;
             if !(second.is_finite() && second > least) {
                 return Err(InvalidValue::new(
-                    "material.second-elastic-constant",
+                    "material.second_elastic_constant",
                     second,
                     format!("a finite number above -3/5 of the elastic constant ({least})"),
                 )
@@ -85,7 +85,7 @@ impl Material {
         }
         match self.surface_order {
             Some(order) => {
-                positive("material.surface-order", order)?;
+                positive("material.surface_order", order)?;
             }
             None if self.equilibrium_order().is_none() => {
                 return Err(NematicError::NoNematicPhase {

@@ -121,7 +121,7 @@ impl NematicParameters {
             positive("nematic.cell", edge)?;
         }
         self.material = self.material.checked()?;
-        self.pattern = self.pattern.checked()?;
+        self.pattern.check("nematic.pattern")?;
         self.anchoring = self.anchoring.checked("nematic.anchoring.weak")?;
         self.plates = self.plates.checked("nematic.plates")?;
         if let Sides::Walled(plate) = self.sides {
@@ -255,9 +255,10 @@ impl NematicAccuracy {
     /// The accuracy, if it makes sense.
     ///
     /// # Errors
-    /// A tolerance outside 1e-9..0.1.
+    /// A tolerance outside 1e-9..0.1, or no steps.
     pub fn checked(self) -> Result<Self, NematicError> {
         in_range("accuracy.tolerance", self.tolerance, 1e-9, 0.1)?;
+        in_range("accuracy.max_steps", self.max_steps as f64, 1.0, 1e15)?;
         Ok(self)
     }
 }

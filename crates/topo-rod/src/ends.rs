@@ -58,7 +58,7 @@ impl Ends {
                 .chain(&motion.force)
                 .chain([&motion.rotation_rate, &motion.torque])
             {
-                topo_core::finite("ends", *x)?;
+                topo_core::finite("discharge.ends", *x)?;
             }
             let (moves, turns) = (motion.velocity != [0.0; 3], motion.rotation_rate != 0.0);
             let (pushed, twisted) = (motion.force != [0.0; 3], motion.torque != 0.0);

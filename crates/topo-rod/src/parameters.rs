@@ -242,6 +242,7 @@ impl Accuracy {
     pub fn checked(self) -> Result<Self, RodError> {
         in_range("accuracy.tolerance", self.tolerance, 1e-10, 1.0)?;
         in_range("accuracy.gamma", self.gamma, 0.25, 4.0)?;
+        in_range("accuracy.reuse", self.reuse as f64, 1.0, 1e9)?;
         in_range("accuracy.skin", self.skin, 0.01, 4.0)?;
         in_range("accuracy.max_steps", self.max_steps as f64, 1.0, 1e15)?;
         Ok(self)

@@ -12,6 +12,7 @@ use crate::progress::Progress;
 use crate::provenance::{self, Provenance, workspace};
 use crate::{reproduction, scenes};
 use std::time::Instant;
+use topo_knots::KnotTable;
 
 pub fn run(args: &FiguresArgs) -> Result<(), XtaskError> {
     let (chosen, movies) = figures::chosen(&args.only)?;
@@ -20,7 +21,7 @@ pub fn run(args: &FiguresArgs) -> Result<(), XtaskError> {
     let results = args.work.out.as_path();
     let mut record = Provenance::collect(&workspace(), args.quality);
 
-    let table = compute::knot_table(args.knots.as_deref())?;
+    let table = KnotTable::builtin_and(args.knots.as_deref())?;
     let order = compute::Order {
         results,
         quality: args.quality,

@@ -6,14 +6,13 @@ mod table;
 mod tighten;
 
 use crate::cli::{KnotArgs, KnotCommand};
-use crate::compute::knot_table;
 use crate::error::XtaskError;
 use std::io::Write as _;
 use std::process::ExitCode;
-use topo_knots::KnotError;
+use topo_knots::{KnotError, KnotTable};
 
 pub fn run(args: &KnotArgs) -> Result<ExitCode, XtaskError> {
-    let table = knot_table(args.knots.as_deref())?;
+    let table = KnotTable::builtin_and(args.knots.as_deref())?;
     match &args.command {
         KnotCommand::Tighten(args) => tighten::run(args, &table)?,
         KnotCommand::Identify(args) => return identify::run(args, &table),

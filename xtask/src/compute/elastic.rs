@@ -10,7 +10,6 @@ use topo_knots::KnotTable;
 pub fn scene(
     mut scene: ElasticScene,
     cuts: Option<&str>,
-    table: &KnotTable,
     settings: &SweepSettings,
 ) -> Result<(), XtaskError> {
     if let Some(text) = cuts {
@@ -20,6 +19,7 @@ pub fn scene(
             remedy,
         })?;
     }
+    let table = &scene.knot_table()?;
     let (scene, grant) = scene.granted(table, settings.jobs)?;
     if let Some(grant) = &grant {
         by_wish::tell_grant(grant, "edges");
@@ -51,7 +51,7 @@ pub fn scene(
     }
     tell_taken(&report.estimate, report.wall_seconds);
     if let Some(grant) = &grant {
-        let check = scene.check_of(grant, &report.rows);
+        let check = scene.check_of(table, grant, &report.rows)?;
         let coarser = sweep(&check, table, settings)?;
         let rows = errors_of_rods(grant, &report.rows, &coarser.rows);
         by_wish::tell_errors(grant, &rows, &folder)?;

@@ -27,8 +27,8 @@ pub(crate) const ELASTIC: [&str; 3] = ["bend", "twist", "stretch"];
 /// Identity of a case: everything that its numbers depend on.
 pub(crate) fn fingerprint(scene: &ElasticScene, case: &ElasticCase, entry: &KnotEntry) -> String {
     let mut all = json!({
-        "version": RESULTS_VERSION, "case": case, "knot": entry, "tighten": scene.tighten, "imperfection": scene.imperfection,
-        "seed": scene.seed, "charge": scene.charge, "cuts": scene.cuts, "discharge": scene.discharge,
+        "version": RESULTS_VERSION, "case": case, "knot": entry, "tighten": scene.tighten, "imperfection": case.imperfection,
+        "seed": case.seed, "charge": scene.charge, "cuts": scene.cuts, "discharge": scene.discharge,
         "timeline": scene.timeline, "accuracy": scene.accuracy, "guards": Guards::default(),
     });
     if starts_from_two_images(case, entry) {
@@ -100,14 +100,14 @@ pub(crate) fn charge(
     let centreline = tight.centreline()?;
     let battery = RodBattery::new(&case.rod, &scene.accuracy, Guards::default(), &centreline);
     let mut battery = battery.map_err(refuse)?;
-    if scene.imperfection > 0.0 {
+    if case.imperfection > 0.0 {
         let start = battery.centreline();
-        let size = scene.imperfection * start.length() / battery.tube().start_length;
+        let size = case.imperfection * start.length() / battery.tube().start_length;
         // the mirror image of a knot has the mirror image of its imperfections
         let moved = if entry.is_mirror_image() {
-            perturbed(&start.mirrored(), size, scene.seed).map(|curve| curve.mirrored())
+            perturbed(&start.mirrored(), size, case.seed).map(|curve| curve.mirrored())
         } else {
-            perturbed(start, size, scene.seed)
+            perturbed(start, size, case.seed)
         };
         let moved = moved.map_err(|e| refuse(e.into()))?;
         battery = battery.disturbed(&moved).map_err(refuse)?;
@@ -178,7 +178,7 @@ pub(crate) fn run(
     if interrupt.is_requested() {
         return Ok(None);
     }
-    let sites: Vec<f64> = match scene.cuts {
+    let sites: Vec<f64> = match &scene.cuts {
         _ if scene.fixed_cuts.is_some() => {
             let fixed = scene.fixed_cuts.as_ref();
             fixed
@@ -192,7 +192,8 @@ pub(crate) fn run(
             .iter()
             .map(|c| c.at)
             .collect(),
-        Cuts::All(k) => (0..k).map(|i| i as f64 / k as f64).collect(),
+        Cuts::All(k) => (0..*k).map(|i| i as f64 / *k as f64).collect(),
+        Cuts::At(places) => places.clone(),
     };
     let mut base = charged_row(job, &charged);
     base.energy_other_image = energy_other_image;
@@ -279,7 +280,7 @@ fn timeline(job: &CaseJob<'_>, discharge: &Discharge) -> Result<Timeline, Analys
     let timed: Vec<_> = samples.iter().zip(&curves).collect();
     let timed: Vec<_> = timed.iter().map(|(s, x)| (s.time, x.as_slice())).collect();
     let scene = job.scene;
-    let timeline = Timeline::of(&timed, job.table, scene.timeline, scene.seed)?;
+    let timeline = Timeline::of(&timed, job.table, scene.timeline, job.case.seed)?;
     Ok(match is_mirror_image {
         true => timeline.mirrored(job.table),
         false => timeline,
@@ -399,11 +400,7 @@ mod tests {
         (scene.rod.n_edges, scene.imperfection) = (80, 0.0);
         let of = |rod: &ChargedRod| rod.record().samples.last().unwrap().elastic();
         let run = |twist: Option<f64>| {
-            let mut case = ElasticCase {
-                knot: "6_3".to_owned(),
-                rod: scene.rod.clone(),
-            };
-            case.rod.twist = twist;
+            let case = scene.case("6_3", twist);
             let job = CaseJob {
                 scene: &scene,
                 case: &case,
@@ -444,13 +441,8 @@ mod tests {
     #[test]
     fn identities_of_chiral_and_untwisted_cases_know_of_one_image() {
         let table = KnotTable::builtin();
-        let case = |knot: &str, twist| ElasticCase {
-            knot: knot.to_owned(),
-            rod: topo_rod::RodParameters {
-                twist,
-                ..Default::default()
-            },
-        };
+        let scene = ElasticScene::published(Preset::Draft);
+        let case = |knot: &str, twist| scene.case(knot, twist);
         for (knot, twist, two) in [
             ("6_3", Some(0.5), true),
             ("6_3", Some(0.0), false),

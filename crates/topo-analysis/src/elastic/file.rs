@@ -9,11 +9,14 @@
 //! [rod.friction]            # leave the table out: no friction is modelled
 //! ratio = 0.1               # eta_f / eta
 //! [discharge]
-//! cuts = "near-ties"        # "argmax", "near-ties" or "all:K"
+//! cuts = "near-ties"        # "argmax", "near-ties", "all:K", a place s/L or a list of places
 //! until_released = 0.999
 //! [accuracy]
 //! preset = "standard"
 //! ```
+//!
+//! Every number of the rod, its reading and its friction range, and `edges` may be a list, numbers also a range: the cases are the
+//! product. `knots = "my-knots"` as a first line names a folder of knot files, beside the scene's file.
 //!
 //! Instead of the table `[accuracy]`, the first line may say `accuracy = 0.02` (relative error of t99) or `budget = "10 min"`.
 
@@ -25,10 +28,12 @@ use topo_rod::{
     IntegratorKind, Reading, RodParameters,
 };
 
+use super::check;
 use super::choices::{Cuts, Names, Numbers, Preset};
-use super::scene::ElasticScene;
+use super::keys::{EDGES, ROD_KEYS};
+use super::scene::{ElasticCase, ElasticScene, OwnKnots};
 use crate::AnalysisError;
-use crate::scene::read_text;
+use crate::scene::{Axis, Document, axes, folder_of, numbers, put_axes, read_text, remove};
 use crate::timeline::TimelineSettings;
 use crate::wish::{Wish, WishOr, budget};
 
@@ -110,6 +115,102 @@ struct File {
     #[serde(default)]
     accuracy: WishOr<AccuracyTable>,
     budget: Option<String>,
+    knots: Option<String>,
+}
+
+impl File {
+    fn asked(&self) -> AccuracyTable {
+        match &self.accuracy {
+            WishOr::Settings(asked) => asked.clone(),
+            WishOr::Wish(_) => AccuracyTable::default(),
+        }
+    }
+
+    /// The case that the file describes, its knot and twist left out.
+    fn case(&self) -> ElasticCase {
+        let (rod, asked) = (&self.rod, self.asked());
+        ElasticCase {
+            knot: String::new(),
+            rod: RodParameters {
+                slenderness: rod.slenderness,
+                reading: rod.reading,
+                n_edges: asked.edges.unwrap_or(asked.preset.edges()),
+                twist_ratio: 1.0 / (1.0 + rod.poisson_ratio),
+                stretch_ratio: rod.stretch_ratio,
+                twist: None,
+                contact: rod.contact,
+                friction: rod.friction,
+            },
+            imperfection: rod.imperfection,
+            seed: rod.seed,
+        }
+    }
+
+    fn scene(
+        self,
+        document: &Document<'_>,
+        axes: Vec<Axis>,
+        twists: Vec<f64>,
+    ) -> Result<ElasticScene, AnalysisError> {
+        let ElasticCase {
+            rod,
+            imperfection,
+            seed,
+            ..
+        } = self.case();
+        let path = document.path();
+        let (asked, wish) = self
+            .accuracy
+            .with_budget(self.budget.as_deref())
+            .map_err(|(key, text, remedy)| document.wrong(key, text, remedy))?;
+        let standard = ElasticScene::published(asked.preset);
+        let (accuracy, discharge) = (standard.accuracy, standard.discharge);
+        let beside = path.parent().unwrap_or(Path::new("")).to_owned();
+        Ok(ElasticScene {
+            folder: folder_of(path)?,
+            knots: match self.rod.knot {
+                Names::One(name) => vec![name],
+                Names::List(names) => names,
+            },
+            twists,
+            rod,
+            imperfection,
+            seed,
+            charge: ChargeSettings {
+                duration: self.charge.duration.unwrap_or(standard.charge.duration),
+                ..standard.charge
+            },
+            cuts: self.discharge.cuts.unwrap_or(standard.cuts),
+            discharge: DischargeSettings {
+                until_released: self
+                    .discharge
+                    .until_released
+                    .unwrap_or(discharge.until_released),
+                longest: self.discharge.longest.unwrap_or(discharge.longest),
+                ends: self.discharge.ends,
+                ..discharge
+            },
+            timeline: TimelineSettings {
+                closures: self
+                    .discharge
+                    .closures
+                    .unwrap_or(standard.timeline.closures),
+                ..standard.timeline
+            },
+            accuracy: Accuracy {
+                tolerance: asked.tolerance.unwrap_or(accuracy.tolerance),
+                gamma: asked.gamma.unwrap_or(accuracy.gamma),
+                integrator: asked.integrator.unwrap_or_default(),
+                reuse: asked.reuse.unwrap_or(accuracy.reuse),
+                max_steps: asked.max_steps.unwrap_or(accuracy.max_steps),
+                ..accuracy
+            },
+            axes,
+            own_knots: self.knots.map(|written| OwnKnots { written, beside }),
+            wish,
+            ..standard
+        })
+    }
 }
 
 impl ElasticScene {
@@ -121,148 +222,20 @@ impl ElasticScene {
         Self::parse(&read_text(path)?, path)
     }
 
-    /// Reads a scene from a text; `path` names it in messages.
+    /// Reads a scene from a text; `path` names it in messages, and its results.
     ///
     /// # Errors
     /// As [`read`](Self::read).
     pub fn parse(text: &str, path: &Path) -> Result<Self, AnalysisError> {
-        let file: File = toml::from_str(text).map_err(|e| AnalysisError::Scene {
-            path: path.to_owned(),
-            message: e.to_string(),
+        let document = Document::new(text, path)?;
+        let (plain, axes) = axes(&document, &ROD_KEYS, |text| {
+            Ok(document.read::<File>(text)?.case())
         })?;
-        let rod = file.rod;
-        let value = |key: &str, value: String, remedy: &str| AnalysisError::SceneValue {
-            path: path.to_owned(),
-            key: key.to_owned(),
-            value,
-            remedy: remedy.to_owned(),
-        };
-        let (asked, wish) = file
-            .accuracy
-            .with_budget(file.budget.as_deref())
-            .map_err(|(key, text, remedy)| value(key, text, &remedy))?;
-        let preset = asked.preset;
-        let knots = match rod.knot {
-            Names::One(name) => vec![name],
-            Names::List(names) => names,
-        };
-        if knots.is_empty() {
-            return Err(value(
-                "rod.knot",
-                "[]".into(),
-                "name at least one knot, or write \"all\"",
-            ));
-        }
-        if let Some(Numbers::Range { n, .. }) = rod.twist
-            && !(1..=100_000).contains(&n)
-        {
-            return Err(value(
-                "rod.twist.n",
-                n.to_string(),
-                "ask for 1 to 100000 twists",
-            ));
-        }
-        let twists = rod.twist.as_ref().map_or(Vec::new(), Numbers::values);
-        if rod.twist.is_some() && twists.is_empty() {
-            return Err(value(
-                "rod.twist",
-                "[]".into(),
-                "give at least one number, or leave the key out to model no twist",
-            ));
-        }
-        if let Some(t) = twists.iter().find(|t| !t.is_finite()) {
-            return Err(value(
-                "rod.twist",
-                t.to_string(),
-                "a finite number is needed, such as 2.0",
-            ));
-        }
-        if !(rod.poisson_ratio > -1.0 && rod.poisson_ratio <= 0.5) {
-            return Err(value(
-                "rod.poisson_ratio",
-                rod.poisson_ratio.to_string(),
-                "a number above -1 and up to 0.5 is needed",
-            ));
-        }
-        if !(0.0..=0.5).contains(&rod.imperfection) {
-            return Err(value(
-                "rod.imperfection",
-                rod.imperfection.to_string(),
-                "a number from 0 to 0.5 (in h) is needed",
-            ));
-        }
-        let standard = Self::published(preset);
-        let accuracy = Accuracy {
-            tolerance: asked.tolerance.unwrap_or(standard.accuracy.tolerance),
-            gamma: asked.gamma.unwrap_or(standard.accuracy.gamma),
-            integrator: asked.integrator.unwrap_or_default(),
-            reuse: asked.reuse.unwrap_or(standard.accuracy.reuse),
-            max_steps: asked.max_steps.unwrap_or(standard.accuracy.max_steps),
-            ..standard.accuracy
-        };
-        let discharge = DischargeSettings {
-            until_released: file
-                .discharge
-                .until_released
-                .unwrap_or(standard.discharge.until_released),
-            longest: file.discharge.longest.unwrap_or(standard.discharge.longest),
-            ends: file.discharge.ends,
-            ..standard.discharge
-        };
-        let scene = Self {
-            knots,
-            twists,
-            rod: RodParameters {
-                slenderness: rod.slenderness,
-                reading: rod.reading,
-                n_edges: asked.edges.unwrap_or(preset.edges()),
-                twist_ratio: 1.0 / (1.0 + rod.poisson_ratio),
-                stretch_ratio: rod.stretch_ratio,
-                twist: None,
-                contact: rod.contact,
-                friction: rod.friction,
-            },
-            imperfection: rod.imperfection,
-            seed: rod.seed,
-            charge: ChargeSettings {
-                duration: file.charge.duration.unwrap_or(standard.charge.duration),
-                ..standard.charge
-            },
-            cuts: file.discharge.cuts.unwrap_or(standard.cuts),
-            discharge,
-            timeline: TimelineSettings {
-                closures: file
-                    .discharge
-                    .closures
-                    .unwrap_or(standard.timeline.closures),
-                ..standard.timeline
-            },
-            accuracy,
-            wish,
-            ..standard
-        };
-        let refuse = |source| AnalysisError::Rod {
-            case: path.display().to_string(),
-            source,
-        };
-        scene.rod.clone().checked().map_err(refuse)?;
-        scene.accuracy.checked().map_err(refuse)?;
-        scene
-            .discharge
-            .ends
-            .checked(!scene.twists.is_empty())
-            .map_err(refuse)?;
-        topo_core::in_range(
-            "discharge.until_released",
-            scene.discharge.until_released,
-            1e-6,
-            1.0 - 1e-9,
-        )
-        .map_err(|e| refuse(e.into()))?;
-        topo_core::positive("discharge.longest", scene.discharge.longest)
-            .map_err(|e| refuse(e.into()))?;
-        topo_core::positive("charge.duration", scene.charge.duration)
-            .map_err(|e| refuse(e.into()))?;
+        let twists = numbers(&document, "rod.twist")?.unwrap_or_default();
+        let file: File = document.read(&plain)?;
+        let poisson_ratio = file.rod.poisson_ratio;
+        let scene = file.scene(&document, axes, twists)?;
+        check::check(&scene, poisson_ratio, &document)?;
         Ok(scene)
     }
 
@@ -291,7 +264,7 @@ impl ElasticScene {
                 duration: Some(self.charge.duration),
             },
             discharge: DischargeTable {
-                cuts: Some(self.cuts),
+                cuts: Some(self.cuts.clone()),
                 until_released: Some(self.discharge.until_released),
                 longest: Some(self.discharge.longest),
                 closures: Some(self.timeline.closures),
@@ -307,17 +280,29 @@ impl ElasticScene {
                 max_steps: Some(self.accuracy.max_steps),
             }),
             budget: budget(self.wish),
+            knots: self.own_knots.as_ref().map(|own| own.written.clone()),
         };
         if let Some(Wish::Accuracy(error)) = self.wish {
             file.accuracy = WishOr::Wish(error);
         }
         // Tables of numbers and names always have a text.
+        let mut file = toml::Table::try_from(&file).unwrap_or_default();
+        if budget(self.wish).is_some() {
+            file.remove("accuracy");
+        }
+        for (key, _) in check::idle(self) {
+            remove(key, &mut file);
+        }
+        let has_wish = self.wish.is_some();
+        let axes = self.axes.iter();
+        let kept = axes.filter(|axis| !(has_wish && axis.key() == EDGES));
+        put_axes(kept, &mut file);
         toml::to_string(&file).unwrap_or_default()
     }
 }
 
 /// Poisson's ratio whose twist ratio 1/(1 + ν) is the one given, to the bit where there is one.
-fn poisson_ratio(twist_ratio: f64) -> f64 {
+pub(super) fn poisson_ratio(twist_ratio: f64) -> f64 {
     let near = 1.0 / twist_ratio - 1.0;
     // 1 + ν is a multiple of this: its neighbours are all that rounding can have meant.
     let spacing = 0.5 * f64::EPSILON;
@@ -328,84 +313,4 @@ fn poisson_ratio(twist_ratio: f64) -> f64 {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn parse(text: &str) -> Result<ElasticScene, AnalysisError> {
-        ElasticScene::parse(text, Path::new("scene.toml"))
-    }
-
-    #[test]
-    fn a_scene_says_what_is_modelled() {
-        let scene = parse("[rod]\nknot = \"7_4\"\ntwist = -2.0\n[rod.contact]\n[rod.friction]\nratio = 0.2\n[discharge]\ncuts = \"all:8\"\n[accuracy]\npreset = \"standard\"\nedges = 120").unwrap();
-        assert_eq!(scene.rod.friction.unwrap().ratio, 0.2);
-        assert_eq!(scene.rod.contact.unwrap().stiffness, 20.0);
-        assert_eq!(
-            (scene.cuts, scene.rod.n_edges, scene.twists.as_slice()),
-            (Cuts::All(8), 120, &[-2.0][..])
-        );
-        let bare = parse("[rod]\nknot = [\"3_1\", \"4_1\"]").unwrap();
-        assert!(
-            bare.rod.friction.is_none() && bare.rod.contact.is_none() && bare.twists.is_empty()
-        );
-        let cases = bare.cases(&topo_knots::KnotTable::builtin()).unwrap();
-        assert_eq!(
-            cases.iter().map(|c| c.knot.as_str()).collect::<Vec<_>>(),
-            ["3_1", "4_1"]
-        );
-    }
-
-    #[test]
-    fn bad_scenes_are_refused_with_key_value_and_remedy() {
-        for (text, words) in [
-            (
-                "[rod]\nknot = \"3_1\"\ntwits = 2",
-                vec!["scene.toml", "twits", "twist"],
-            ),
-            (
-                "[rod]\nknot = \"3_1\"\ntwist = nan",
-                vec!["rod.twist", "NaN", "finite"],
-            ),
-            (
-                "[rod]\nknot = \"3_1\"\nslenderness = -50",
-                vec!["slenderness", "-50"],
-            ),
-            (
-                "[rod]\nknot = \"3_1\"\n[accuracy]\nedges = 4",
-                vec!["4 edges", "8"],
-            ),
-            (
-                "[rod]\nknot = \"3_1\"\n[rod.friction]\nratio = -1",
-                vec!["friction.ratio", "-1"],
-            ),
-            ("[rod]\nknot = 3", vec!["scene.toml", "knot"]),
-            (
-                "[rod]\nknot = \"3_1\"\n[discharge]\ncuts = \"all:0\"",
-                vec!["all:0", "near-ties"],
-            ),
-            (
-                "[rod]\nknot = \"3_1\"\npoisson_ratio = 0.9",
-                vec!["rod.poisson_ratio", "0.9"],
-            ),
-            ("[rod]\nknot = []", vec!["rod.knot"]),
-            ("knot = 1", vec!["scene.toml"]),
-        ] {
-            let message = parse(text).unwrap_err().to_string();
-            for word in words {
-                assert!(
-                    message.contains(word),
-                    "{text:?} gives {message:?} without {word:?}"
-                );
-            }
-        }
-        let unknown = parse("[rod]\nknot = \"3_7\"")
-            .unwrap()
-            .cases(&topo_knots::KnotTable::builtin())
-            .unwrap_err()
-            .to_string();
-        assert!(
-            unknown.contains("3_7") && unknown.contains("3_1"),
-            "{unknown}"
-        );
-    }
-}
+mod tests;

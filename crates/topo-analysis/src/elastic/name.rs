@@ -5,7 +5,7 @@ use topo_rod::{FrictionRange, RodParameters};
 
 use super::case::settings_of;
 use super::choices::Preset;
-use super::scene::{ElasticCase, ElasticScene};
+use super::scene::{ElasticCase, ElasticScene, OwnKnots};
 use crate::sweep::{CaseName, Row, value};
 use crate::table::SweepRow;
 
@@ -39,12 +39,12 @@ impl ElasticScene {
         };
         name.changes(&value(rod), &value(&said), &[])
             .changes(
-                &json!({"imperfection": self.imperfection, "seed": self.seed}),
+                &json!({"imperfection": case.imperfection, "seed": case.seed}),
                 &json!({"imperfection": usual.imperfection, "seed": usual.seed}),
                 &[],
             )
             .unsaid(&settings_of(self, case), &settings_of(&usual, case))
-            .finish(|| json!([case, self.imperfection, self.seed, settings_of(self, case)]))
+            .finish(|| json!([case, case.imperfection, case.seed, settings_of(self, case)]))
     }
 
     /// A row of a case with its settings only.
@@ -66,8 +66,8 @@ impl ElasticScene {
                 FrictionRange::Contact => "contact".to_owned(),
                 FrictionRange::TimesContact(x) => x.to_string(),
             }),
-            imperfection: self.imperfection,
-            seed: self.seed,
+            imperfection: case.imperfection,
+            seed: case.seed,
             tolerance: self.accuracy.tolerance,
             ..SweepRow::default()
         }
@@ -75,8 +75,12 @@ impl ElasticScene {
 
     /// The scene as [`text`](Self::text) with the settings themselves where a wish picked them.
     pub fn resolved_text(&self) -> String {
+        // the folder of knots is named so that it is found from anywhere
+        let own_knots = self.own_knots.as_ref().map(OwnKnots::path);
+        let own_knots = own_knots.map(|path| std::path::absolute(&path).unwrap_or(path));
         let scene = Self {
             wish: None,
+            own_knots: own_knots.as_deref().map(OwnKnots::at),
             ..self.clone()
         };
         scene.text()

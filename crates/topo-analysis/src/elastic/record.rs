@@ -215,7 +215,7 @@ pub(super) fn write_case(made: &MadeCase<'_>, folder: &Path) -> Result<(), Analy
         "fingerprint": fingerprint(scene, case, &entry),
         "case": case,
         "scene": scene,
-        "seed": scene.seed,
+        "seed": case.seed,
         "versions": { "topo": env!("CARGO_PKG_VERSION"), "results": RESULTS_VERSION },
         "units": { "length": "h", "time": "T_0 = 2 L eta/(h E_b)", "energy": "E_0 = E_b h^2 L" },
         "tube": charged.battery().tube(),

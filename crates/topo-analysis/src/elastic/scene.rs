@@ -1,16 +1,18 @@
 //! An elastic experiment and the cases it stands for.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
-use topo_knots::TightenSettings;
+use topo_knots::{KnotTable, TightenSettings};
 use topo_rod::{Accuracy, ChargeSettings, DischargeSettings, RodParameters};
 
 use super::choices::{Cuts, Numbers, Preset};
 use super::file::defaults;
+use super::keys::{EDGES, ROD_KEYS};
 use super::sweep::weight;
 use crate::AnalysisError;
+use crate::scene::{Axis, product};
 use crate::table::SweepRow;
 use crate::timeline::TimelineSettings;
 use crate::wish::{Grant, Load, Measured, Wish, grant};
@@ -40,6 +42,12 @@ pub struct ElasticScene {
     pub timeline: TimelineSettings,
     /// Integrator and tolerance.
     pub accuracy: Accuracy,
+    /// Keys with several values: the cases are their product, the last axis running fastest.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub axes: Vec<Axis>,
+    /// Folder of knots besides the built-in ones.
+    #[serde(skip)]
+    pub own_knots: Option<OwnKnots>,
     /// Preset that the numbers started from.
     pub preset: Preset,
     /// How the start shapes are tightened.
@@ -59,17 +67,53 @@ pub struct ElasticCase {
     pub knot: String,
     /// Material, twist, reading and resolution.
     pub rod: RodParameters,
+    /// Size of the random perturbation of the start curve, in h.
+    #[serde(skip)]
+    pub imperfection: f64,
+    /// Seed of that perturbation and of the closures.
+    #[serde(skip)]
+    pub seed: u64,
 }
 
-impl ElasticCase {
-    /// The charged state, whatever the resolution.
-    pub fn state(&self) -> String {
-        state(&self.knot, self.rod.twist.unwrap_or(0.0))
+/// A folder of knot files that a scene names.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct OwnKnots {
+    /// As the scene has it, relative to the scene's file.
+    pub(super) written: String,
+    /// Where the scene's file lies.
+    pub(super) beside: PathBuf,
+}
+
+impl OwnKnots {
+    /// A folder as a command line names it.
+    pub fn at(folder: &Path) -> Self {
+        Self {
+            written: folder.display().to_string(),
+            beside: PathBuf::new(),
+        }
+    }
+
+    /// Where the folder is.
+    pub fn path(&self) -> PathBuf {
+        self.beside.join(&self.written)
     }
 }
 
-fn state(knot: &str, twist: f64) -> String {
-    format!("{knot} {twist}")
+impl ElasticCase {
+    /// The charged state, whatever the resolution: knot, twist, and what is not as published.
+    pub fn state(&self) -> String {
+        let mut name = format!("{} {}", self.knot, self.rod.twist.unwrap_or(0.0));
+        let published = ElasticScene::published(Preset::default()).case(&self.knot, None);
+        for key in ROD_KEYS.iter().filter(|key| key.key != EDGES) {
+            match key.read(self) {
+                Some(value) if key.read(&published).as_ref() != Some(&value) => {
+                    name.push_str(&format!(" {}={value}", key.key));
+                }
+                _ => {}
+            }
+        }
+        name
+    }
 }
 
 impl ElasticScene {
@@ -95,6 +139,8 @@ impl ElasticScene {
             discharge: DischargeSettings::default(),
             timeline: TimelineSettings::default(),
             accuracy: preset.accuracy(),
+            axes: Vec::new(),
+            own_knots: None,
             preset,
             tighten: preset.tighten(),
             wish: None,
@@ -102,15 +148,39 @@ impl ElasticScene {
         }
     }
 
-    /// The cases of the scene, knots in the order given, twists inside.
-    pub fn cases(&self, table: &topo_knots::KnotTable) -> Result<Vec<ElasticCase>, AnalysisError> {
-        let mut names = Vec::new();
+    /// The built-in knots with those of the folder that the scene names.
+    ///
+    /// # Errors
+    /// A folder that cannot be read, or a file in it that is no knot.
+    pub fn knot_table(&self) -> Result<KnotTable, AnalysisError> {
+        let folder = self.own_knots.as_ref().map(OwnKnots::path);
+        Ok(KnotTable::builtin_and(folder.as_deref())?)
+    }
+
+    /// The cases of the scene: knots in the order given, twists inside, the values of the [axes](Self::axes) innermost.
+    ///
+    /// # Errors
+    /// An unknown knot, or one that is there twice, be it by an alias or besides \"all\".
+    pub fn cases(&self, table: &KnotTable) -> Result<Vec<ElasticCase>, AnalysisError> {
+        let mut names: Vec<String> = Vec::new();
+        let mut seen = HashSet::new();
         for name in &self.knots {
-            if name == "all" {
-                names.extend(table.primes_up_to(7).map(|knot| knot.name.clone()));
+            let meant = if name == "all" {
+                let primes = table.primes_up_to(7);
+                primes.map(|knot| knot.name.clone()).collect()
             } else {
-                names.push(table.get(name)?.name.clone());
+                vec![table.get(name)?.name.clone()]
+            };
+            if let Some(twice) = meant.iter().find(|knot| !seen.insert((*knot).clone())) {
+                return Err(AnalysisError::SceneValue {
+                    path: PathBuf::from(&self.folder),
+                    line: None,
+                    key: "rod.knot".to_owned(),
+                    value: name.clone(),
+                    remedy: format!("{twice} is there already: name each knot once"),
+                });
             }
+            names.extend(meant);
         }
         let twists: Vec<Option<f64>> = if self.twists.is_empty() {
             vec![None]
@@ -120,6 +190,7 @@ impl ElasticScene {
         Ok(names
             .iter()
             .flat_map(|knot| twists.iter().map(move |t| self.case(knot, *t)))
+            .flat_map(|case| product(&ROD_KEYS, &self.axes, case))
             .collect())
     }
 
@@ -131,6 +202,8 @@ impl ElasticScene {
                 twist,
                 ..self.rod.clone()
             },
+            imperfection: self.imperfection,
+            seed: self.seed,
         }
     }
 
@@ -140,14 +213,14 @@ impl ElasticScene {
     /// A wish that no measured setting grants, with what can be had, or an unknown knot.
     pub fn granted(
         &self,
-        table: &topo_knots::KnotTable,
+        table: &KnotTable,
         jobs: usize,
     ) -> Result<(Self, Option<Grant>), AnalysisError> {
         let Some(wish) = self.wish else {
             return Ok((self.clone(), None));
         };
         let load = Load {
-            cases: self.cases(table)?.len() as f64 * weight(self),
+            cases: self.without(EDGES).cases(table)?.len() as f64 * weight(self),
             threads: crate::cost::threads(jobs),
         };
         let grant = grant(Measured::Rod, wish, load).map_err(|reason| AnalysisError::Wish {
@@ -158,26 +231,59 @@ impl ElasticScene {
         Ok((self.at(point.resolution, point.tolerance), Some(grant)))
     }
 
-    /// The coarser scene whose difference to the runs `rows` tells their error: the same states and cuts.
-    pub fn check_of(&self, grant: &Grant, rows: &[SweepRow]) -> Self {
+    /// The coarser scene whose difference to the runs `rows` of this one tells their error: the same states and cuts.
+    ///
+    /// # Errors
+    /// As [`cases`](Self::cases).
+    pub fn check_of(
+        &self,
+        table: &KnotTable,
+        grant: &Grant,
+        rows: &[SweepRow],
+    ) -> Result<Self, AnalysisError> {
+        let cases = self.cases(table)?;
+        let states: HashMap<String, String> = cases
+            .iter()
+            .map(|c| (self.case_name(c), c.state()))
+            .collect();
         let mut cuts: BTreeMap<String, Vec<f64>> = BTreeMap::new();
         for row in rows {
-            let at = cuts.entry(state(&row.knot, row.twist)).or_default();
-            at.push(row.cut);
+            if let Some(state) = states.get(&row.case) {
+                cuts.entry(state.clone()).or_default().push(row.cut);
+            }
         }
         let point = &grant.point;
-        Self {
+        Ok(Self {
             folder: format!("{}-check", self.folder),
             fixed_cuts: Some(cuts),
             ..self.at(point.check_resolution, point.check_tolerance)
-        }
+        })
     }
 
     fn at(&self, edges: f64, tolerance: f64) -> Self {
-        let mut scene = self.clone();
+        let mut scene = self.without(EDGES);
         scene.rod.n_edges = edges as usize;
         scene.accuracy.tolerance = tolerance;
         scene
+    }
+
+    /// The scene with one value of a key that may have several.
+    fn without(&self, key: &str) -> Self {
+        let mut scene = self.clone();
+        scene.axes.retain(|axis| axis.key() != key);
+        scene
+    }
+
+    /// The scene with other cuts.
+    ///
+    /// # Errors
+    /// Cuts that fall on one vertex of a rod, and what would be right.
+    pub fn with_cuts(mut self, cuts: Cuts) -> Result<Self, String> {
+        for case in product(&ROD_KEYS, &self.axes, self.case("", None)) {
+            cuts.clash(case.rod.n_edges).map_or(Ok(()), Err)?;
+        }
+        self.cuts = cuts;
+        Ok(self)
     }
 
     /// Where files with the scene's tables lie below an output folder.

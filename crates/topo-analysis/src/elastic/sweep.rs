@@ -154,11 +154,12 @@ pub fn estimate_sweep(
 fn case_cost(scene: &ElasticScene, n_cuts: Option<usize>) -> Cost {
     let edges = scene.rod.n_edges as f64 / 200.0;
     let tolerance = (1e-3 / scene.accuracy.tolerance.max(1e-9)).max(1e-3);
-    let n_cuts = match (n_cuts, scene.cuts) {
+    let n_cuts = match (n_cuts, &scene.cuts) {
         (Some(n), _) => n as f64,
         (None, Cuts::Argmax) => 1.0,
         (None, Cuts::NearTies) => MEAN_NEAR_TIES,
-        (None, Cuts::All(k)) => k as f64,
+        (None, Cuts::All(k)) => *k as f64,
+        (None, Cuts::At(places)) => places.len() as f64,
     };
     let one = edges.powf(EDGES_POWER) * tolerance.powf(TOLERANCE_POWER);
     Cost {
@@ -187,7 +188,7 @@ const TOLERANCE_POWER: f64 = 0.25;
 /// Near-tied cuts of a case, on average over the published sweep.
 const MEAN_NEAR_TIES: f64 = 4.5;
 /// Bytes that a case holds at N = 200.
-const BYTES: f64 = 6e7;
+pub(super) const BYTES: f64 = 6e7;
 
 #[cfg(test)]
 mod tests {

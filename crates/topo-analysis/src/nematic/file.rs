@@ -9,64 +9,84 @@
 //! tolerance = 1e-8                     # rms of the molecular field
 //! [switch]                             # the anchoring after it: free, unless said otherwise
 //! [discharge]
-//! until-released = 0.9995
+//! until_released = 0.9995
 //! [flow]                               # leave the table out: no velocity is modelled
 //! [accuracy]
 //! tolerance = 3e-5
 //! ```
+//!
+//! Every number of particle, plates, material and field, and patterns, anchorings and boundary may be a list, numbers also a range: the
+//! cases are the product.
 //!
 //! Instead of the spacing and the table `[accuracy]`, the first line may say `accuracy = 0.02` (relative error of t99.9) or
 //! `budget = "10 min"`.
 
 use std::path::Path;
 
-use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use topo_nematic::{
-    ChargeSettings, DischargeSettings, FlowParameters, NematicAccuracy, NematicParameters,
-    SwitchSettings,
+    ChargeSettings, DischargeSettings, FlowParameters, Material, NematicAccuracy,
+    NematicParameters, SwitchSettings,
 };
 
-use super::scene::NematicScene;
+use super::check;
+use super::keys::{COLLOID_KEYS, SPACING};
+use super::scene::{NematicCase, NematicScene};
 use crate::AnalysisError;
-use crate::elastic::Numbers;
-use crate::scene::read_text;
+use crate::scene::{BesideQ, Document, axes, folder_of, numbers, put_axes, read_text, remove};
 use crate::wish::{Wish, WishOr, budget};
 
-/// The colloid and its windings.
-#[derive(Debug, Deserialize)]
-struct NematicTable {
-    /// Windings; the pattern of the settings without.
-    q: Option<Numbers>,
-    #[serde(flatten)]
-    settings: toml::Table,
-}
-
+/// A file, its windings left out: those of the colloid, and those that have flow besides all without.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct File {
-    nematic: NematicTable,
-    material: Option<toml::Value>,
+    nematic: BesideQ<NematicParameters>,
+    material: Option<Material>,
     #[serde(default)]
     charge: ChargeSettings,
     #[serde(default)]
     switch: SwitchSettings,
     #[serde(default)]
     discharge: DischargeSettings,
-    flow: Option<FlowTable>,
+    flow: Option<BesideQ<FlowParameters>>,
     #[serde(default)]
     accuracy: WishOr<NematicAccuracy>,
     budget: Option<String>,
 }
 
-/// Flow and the windings that have it.
-#[derive(Debug, Deserialize)]
-struct FlowTable {
-    /// Only these, besides all without flow.
-    q: Option<Numbers>,
-    #[serde(flatten)]
-    settings: toml::Table,
+impl File {
+    /// The case that the file describes, without a winding.
+    fn case(self) -> NematicCase {
+        let BesideQ(mut nematic) = self.nematic;
+        if let Some(material) = self.material {
+            nematic.material = material;
+        }
+        NematicCase {
+            q: 0,
+            nematic,
+            flow: None,
+        }
+    }
 }
+
+/// Windings: whole numbers from 1 on.
+fn windings(document: &Document<'_>, key: &str) -> Result<Option<Vec<u32>>, AnalysisError> {
+    let whole = |q: f64| {
+        if q.fract() == 0.0 && (1.0..=MOST_TURNS).contains(&q) {
+            Ok(q as u32)
+        } else {
+            let remedy = format!("whole numbers from 1 to {MOST_TURNS} are needed");
+            Err(document.wrong(key, q, remedy))
+        }
+    };
+    let values = numbers(document, key)?;
+    values
+        .map(|values| values.into_iter().map(whole).collect())
+        .transpose()
+}
+
+/// Largest winding: beyond it no grid that fits in memory would show it.
+const MOST_TURNS: f64 = 10_000.0;
 
 impl NematicScene {
     /// Reads a scene file.
@@ -77,114 +97,45 @@ impl NematicScene {
         Self::parse(&read_text(path)?, path)
     }
 
-    /// Reads a scene from a text; `path` names it in messages.
+    /// Reads a scene from a text; `path` names it in messages, and its results.
     ///
     /// # Errors
     /// As [`read`](Self::read).
     pub fn parse(text: &str, path: &Path) -> Result<Self, AnalysisError> {
-        let wrong = |e: toml::de::Error| AnalysisError::Scene {
-            path: path.to_owned(),
-            message: e.to_string(),
+        let document = Document::new(text, path)?;
+        document.idle("knots", "a colloid has no knots: leave it out")?;
+        let both = |one: &str, other: &str, remedy: &str| match document.has(other) {
+            true => document.idle(one, remedy),
+            false => Ok(()),
         };
-        let file: File = toml::from_str(text).map_err(wrong)?;
-        let value = |key: &str, value: String, remedy: &str| AnalysisError::SceneValue {
-            path: path.to_owned(),
-            key: key.to_owned(),
-            value,
-            remedy: remedy.to_owned(),
-        };
-        let windings = |key: &str, numbers: &Numbers| {
-            if let Numbers::Range { n, .. } = numbers
-                && !(1..=10_000).contains(n)
-            {
-                return Err(value(
-                    &format!("{key}.n"),
-                    n.to_string(),
-                    "ask for 1 to 10000 windings",
-                ));
-            }
-            numbers
-                .values()
-                .into_iter()
-                .map(|q| {
-                    if q.fract() == 0.0 && (1.0..=10_000.0).contains(&q) {
-                        Ok(q as u32)
-                    } else {
-                        Err(value(
-                            key,
-                            q.to_string(),
-                            "whole numbers from 1 to 10000 are needed",
-                        ))
-                    }
-                })
-                .collect::<Result<Vec<u32>, _>>()
-        };
-        let (accuracy, wish) = file
-            .accuracy
+        both("nematic.pattern", "nematic.q", "keep either q or pattern")?;
+        let remedy = "[material] is there too: keep one of them";
+        both("nematic.material", "material", remedy)?;
+        let (plain, axes) = axes(&document, &COLLOID_KEYS, |text| {
+            Ok(document.read::<File>(text)?.case())
+        })?;
+        let charges = windings(&document, "nematic.q")?;
+        let flowing = windings(&document, "flow.q")?;
+        let mut file: File = document.read(&plain)?;
+        let flow = file.flow.take().map(|BesideQ(flow)| flow);
+        let (accuracy, wish) = std::mem::take(&mut file.accuracy)
             .with_budget(file.budget.as_deref())
-            .map_err(|(key, text, remedy)| value(key, text, &remedy))?;
-        let n = file.nematic;
-        let charges = match &n.q {
-            Some(q) => windings("nematic.q", q)?,
-            None => Vec::new(),
-        };
-        if n.q.is_some() && charges.is_empty() {
-            return Err(value("nematic.q", "[]".into(), "name at least one q"));
-        }
-        let mut colloid = n.settings;
-        if n.q.is_some() && colloid.contains_key("pattern") {
-            return Err(value(
-                "nematic.pattern",
-                "given together with q".into(),
-                "keep either q or pattern",
-            ));
-        }
-        if file.material.is_some() && colloid.contains_key("material") {
-            return Err(value(
-                "nematic.material",
-                "given together with [material]".into(),
-                "keep one of them",
-            ));
-        }
-        colloid.extend(file.material.map(|m| ("material".to_owned(), m)));
-        let nematic: NematicParameters = settings("[nematic]", colloid, path)?;
-        let (flow, flowing) = match file.flow {
-            None => (None, None),
-            Some(table) => {
-                let flowing = table
-                    .q
-                    .as_ref()
-                    .map(|q| windings("flow.q", q))
-                    .transpose()?;
-                let settings: FlowParameters = settings("[flow]", table.settings, path)?;
-                (Some(settings), flowing)
-            }
-        };
-        if file.discharge.flow.is_some() {
-            return Err(value(
-                "discharge.flow",
-                "given".into(),
-                "write the table [flow] instead",
-            ));
-        }
-        let refuse = |source| AnalysisError::Nematic {
-            case: path.display().to_string(),
-            source,
-        };
-        nematic.clone().checked().map_err(refuse)?;
+            .map_err(|(key, text, remedy)| document.wrong(key, text, remedy))?;
         let scene = Self {
-            folder: "nematic".to_owned(),
-            charges,
+            folder: folder_of(path)?,
+            charges: charges.unwrap_or_default(),
             flowing,
-            nematic,
-            charge: file.charge,
-            switch: file.switch,
-            discharge: file.discharge,
+            charge: file.charge.clone(),
+            switch: file.switch.clone(),
+            discharge: file.discharge.clone(),
             flow,
             accuracy,
+            axes,
+            fitted: None,
             wish,
+            nematic: file.case().nematic,
         };
-        scene.accuracy.checked().map_err(refuse)?;
+        check::check(&scene, &document)?;
         Ok(scene)
     }
 
@@ -232,6 +183,13 @@ impl NematicScene {
         if let Some(text) = budget(self.wish) {
             file.insert("budget".to_owned(), toml::Value::String(text));
         }
+        for (key, _) in check::idle(self) {
+            remove(key, &mut file);
+        }
+        let has_wish = self.wish.is_some();
+        let axes = self.axes.iter();
+        let kept = axes.filter(|axis| !(has_wish && axis.key() == SPACING));
+        put_axes(kept, &mut file);
         // Tables of numbers and names always have a text.
         toml::to_string(&file).unwrap_or_default()
     }
@@ -243,92 +201,5 @@ fn table_of<T: Serialize>(settings: &T) -> toml::Table {
     toml::Table::try_from(settings).unwrap_or_default()
 }
 
-/// The settings of a table; keys that nobody knows are refused with the table's name.
-fn settings<T: DeserializeOwned>(
-    name: &str,
-    table: toml::Table,
-    path: &Path,
-) -> Result<T, AnalysisError> {
-    table
-        .try_into()
-        .map_err(|e: toml::de::Error| AnalysisError::Scene {
-            path: path.to_owned(),
-            message: format!("in {name}: {e}"),
-        })
-}
-
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use topo_nematic::SurfacePattern;
-
-    fn parse(text: &str) -> Result<NematicScene, AnalysisError> {
-        NematicScene::parse(text, Path::new("scene.toml"))
-    }
-
-    #[test]
-    fn a_scene_says_what_is_modelled() {
-        let scene =
-            parse("[nematic]\nradius = 15\nq = [2, 5]\n[material]\nflow_alignment = 0.8").unwrap();
-        assert_eq!(scene.charges, [2, 5]);
-        assert!(scene.flow.is_none() && scene.nematic.material.flow_alignment == 0.8);
-        let cases = scene.cases();
-        assert_eq!(cases.len(), 2);
-        assert_eq!(cases[1].nematic.pattern, SurfacePattern::Charge(5));
-        let flowing = parse("[nematic]\nradius = 15\nq = [2, 5]\n[flow]\nq = 5").unwrap();
-        let with = |scene: &NematicScene| {
-            let cases = scene.cases();
-            cases
-                .iter()
-                .map(|c| (c.q, c.flow.is_some()))
-                .collect::<Vec<_>>()
-        };
-        assert_eq!(with(&flowing), [(2, false), (5, false), (5, true)]);
-        let all =
-            parse("[nematic]\nq = { from = 1, to = 3, n = 3 }\n[flow]\nboundary_residual = 0.1")
-                .unwrap();
-        assert_eq!(with(&all), [(1, true), (2, true), (3, true)]);
-        assert_eq!(all.flow.unwrap().boundary_residual, 0.1);
-        let plain = parse("[nematic]\npattern = \"homeotropic\"").unwrap();
-        assert_eq!(with(&plain), [(0, false)]);
-    }
-
-    #[test]
-    fn bad_scenes_are_refused_with_key_value_and_remedy() {
-        for (text, words) in [
-            (
-                "[nematic]\nraduis = 2",
-                vec!["scene.toml", "[nematic]", "raduis", "radius"],
-            ),
-            (
-                "[nematic]\nq = 0",
-                vec!["nematic.q", "0", "whole numbers from 1"],
-            ),
-            ("[nematic]\nq = -3", vec!["nematic.q", "-3"]),
-            ("[nematic]\nq = 2.5", vec!["nematic.q", "2.5"]),
-            ("[nematic]\nq = []", vec!["nematic.q"]),
-            (
-                "[nematic]\nq = 1\npattern = \"homeotropic\"",
-                vec!["nematic.pattern", "either"],
-            ),
-            (
-                "[nematic]\nq = 1\n[flow]\nevery = 2",
-                vec!["[flow]", "every", "boundary_residual"],
-            ),
-            ("[nematic]\nq = 1\n[flow]\nq = 0", vec!["flow.q"]),
-            (
-                "[nematic]\nq = 1\n[accuracy]\ntolerance = -1",
-                vec!["tolerance", "-1"],
-            ),
-            ("[nematic]\nq = \"two\"", vec!["scene.toml", "q"]),
-        ] {
-            let message = parse(text).unwrap_err().to_string();
-            for word in words {
-                assert!(
-                    message.contains(word),
-                    "{text:?} gives {message:?} without {word:?}"
-                );
-            }
-        }
-    }
-}
+mod tests;

@@ -107,10 +107,10 @@ impl NematicScene {
         }
     }
 
-    /// The scene as [`text`](Self::text) with the settings themselves where a wish picked them.
+    /// The scene as [`text`](Self::text) with the settings themselves where a wish picked them; the wish where each case has its own.
     pub fn resolved_text(&self) -> String {
         let scene = Self {
-            wish: None,
+            wish: self.wish.filter(|_| self.fitted.is_some()),
             ..self.clone()
         };
         scene.text()

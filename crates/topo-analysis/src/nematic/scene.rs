@@ -8,9 +8,11 @@ use topo_nematic::{
     SurfacePattern, SwitchSettings,
 };
 
+use super::keys::{COLLOID_KEYS, SPACING};
 use super::sweep::weight;
 use crate::AnalysisError;
 use crate::elastic::Preset;
+use crate::scene::{Axis, product};
 use crate::wish::{Grant, Load, Measured, Wish, grant};
 
 /// The q that the draft preset shows with flow.
@@ -37,6 +39,12 @@ pub struct NematicScene {
     pub flow: Option<FlowParameters>,
     /// Tolerance, storage and limits.
     pub accuracy: NematicAccuracy,
+    /// Keys with several values: the cases are their product, the last axis running fastest.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub axes: Vec<Axis>,
+    /// Spacing that a wish asks for: the grid of each case is fitted to it.
+    #[serde(skip)]
+    pub(super) fitted: Option<f64>,
     /// What was asked for instead of settings.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub wish: Option<Wish>,
@@ -78,6 +86,8 @@ impl NematicScene {
             discharge: DischargeSettings::default(),
             flow: Some(FlowParameters::default()),
             accuracy: NematicAccuracy::default(),
+            axes: Vec::new(),
+            fitted: None,
             wish: None,
         }
     }
@@ -91,7 +101,7 @@ impl NematicScene {
             return Ok((self.clone(), None));
         };
         let load = Load {
-            cases: weight(self)?,
+            cases: weight(&self.without(SPACING))?,
             threads: crate::cost::threads(jobs),
         };
         let grant = grant(Measured::Nematic, wish, load).map_err(|reason| AnalysisError::Wish {
@@ -112,47 +122,58 @@ impl NematicScene {
     }
 
     fn at(&self, spacing: f64, tolerance: f64) -> Self {
-        let mut scene = self.clone();
-        fit(&mut scene.nematic, spacing);
+        let mut scene = self.without(SPACING);
+        if scene.axes.is_empty() {
+            fit(&mut scene.nematic, spacing);
+        } else {
+            scene.fitted = Some(spacing);
+        }
         scene.accuracy.tolerance = tolerance;
         scene
     }
 
-    /// The cases of the scene, by q; with flow after without.
+    /// The scene with one value of a key that may have several.
+    fn without(&self, key: &str) -> Self {
+        let mut scene = self.clone();
+        scene.axes.retain(|axis| axis.key() != key);
+        scene
+    }
+
+    /// The cases of the scene: windings in the order given, the values of the [axes](Self::axes) inside; of two cases that differ in
+    /// flow alone, the one with it comes second.
     pub fn cases(&self) -> Vec<NematicCase> {
         let mut cases = Vec::new();
-        let mut add = |q: Option<u32>| {
-            let mut nematic = self.nematic.clone();
-            if let Some(q) = q {
-                nematic.pattern = SurfacePattern::Charge(q as i32);
-            }
-            let q = match nematic.pattern {
-                SurfacePattern::Charge(q) => q.unsigned_abs(),
-                _ => 0,
+        let mut add = |pattern: SurfacePattern| {
+            let base = NematicCase {
+                q: 0,
+                nematic: NematicParameters {
+                    pattern,
+                    ..self.nematic.clone()
+                },
+                flow: None,
             };
-            let mut case = |flow| {
-                cases.push(NematicCase {
-                    q,
-                    nematic: nematic.clone(),
-                    flow,
-                });
-            };
-            match (&self.flow, &self.flowing) {
-                (None, _) => case(None),
-                (Some(flow), None) => case(Some(*flow)),
-                (Some(flow), Some(chosen)) => {
-                    case(None);
-                    if chosen.contains(&q) {
-                        case(Some(*flow));
-                    }
+            for mut case in product(&COLLOID_KEYS, &self.axes, base) {
+                if let Some(spacing) = self.fitted {
+                    fit(&mut case.nematic, spacing);
+                }
+                case.q = winding(&case.nematic);
+                let chosen = self.flowing.as_ref();
+                let is_still = self.flow.is_none() || chosen.is_some();
+                let flows = chosen.is_none_or(|chosen| chosen.contains(&case.q));
+                let flow = self.flow.filter(|_| flows);
+                if is_still {
+                    cases.push(case.clone());
+                }
+                if flow.is_some() {
+                    cases.push(NematicCase { flow, ..case });
                 }
             }
         };
         if self.charges.is_empty() {
-            add(None);
+            add(self.nematic.pattern.clone());
         }
         for &q in &self.charges {
-            add(Some(q));
+            add(SurfacePattern::Charge(q as i32));
         }
         cases
     }
@@ -160,6 +181,14 @@ impl NematicScene {
     /// Where files with the scene's tables lie below an output folder.
     pub fn results(&self, out: &Path) -> PathBuf {
         out.join(&self.folder)
+    }
+}
+
+/// Turns of the anchoring: none without a particle, or with a pattern that has none.
+fn winding(nematic: &NematicParameters) -> u32 {
+    match nematic.pattern {
+        SurfacePattern::Charge(q) if nematic.particle => q.unsigned_abs(),
+        _ => 0,
     }
 }
 

@@ -125,6 +125,23 @@ pub struct NematicRow {
 pub(super) const BUCKLED: f64 = 0.01;
 
 impl NematicRow {
+    /// Whether two rows are of one discharge, whatever their resolution.
+    pub fn is_same_discharge(&self, other: &Self) -> bool {
+        let settings = |r: &Self| {
+            (
+                [&r.boundary, &r.flow, &r.pattern, &r.anchoring].map(String::clone),
+                (r.q, r.radius, [r.a, r.b, r.c, r.elastic_constant]),
+                [r.rotational_mobility, r.flow_alignment, r.viscosity],
+                [
+                    r.second_elastic_constant,
+                    r.surface_order,
+                    r.field_anisotropy,
+                ],
+            )
+        };
+        settings(self) == settings(other)
+    }
+
     /// Whether the ring is buckled; symmetry makes the order parameter zero below, to the residual of the charge.
     pub fn is_buckled(&self) -> bool {
         self.order_parameter > BUCKLED

@@ -32,19 +32,19 @@ pub struct ErrorRow {
 /// `cuts_are_matched_by_their_order`
 pub fn errors_of_rods(grant: &Grant, rows: &[SweepRow], coarser: &[SweepRow]) -> Vec<ErrorRow> {
     let place = |k: usize, rows: &[SweepRow]| {
-        let same = |r: &&SweepRow| r.knot == rows[k].knot && r.twist == rows[k].twist;
+        let same = |r: &&SweepRow| r.is_same_state(&rows[k]);
         rows[..k].iter().filter(same).count()
     };
     let of = |(k, row): (usize, &SweepRow)| {
         let beside = coarser
             .iter()
-            .filter(|r| r.knot == row.knot && r.twist == row.twist)
+            .filter(|r| r.is_same_state(row))
             .nth(place(k, rows));
         let coarser = beside.and_then(|r| r.t99);
         let early = (row.t50, beside.and_then(|r| r.t50));
         let told = told(&[early, (row.t99, coarser)], grant.point.ratio());
         ErrorRow {
-            case: format!("{} {:+.2}", row.knot, row.twist),
+            case: row.case.clone(),
             cut: Some(row.cut),
             quantity: "t99".to_owned(),
             result: row.t99,
@@ -62,7 +62,7 @@ pub fn errors_of_colloids(
     coarser: &[NematicRow],
 ) -> Vec<ErrorRow> {
     let of = |row: &NematicRow| {
-        let beside = coarser.iter().find(|r| r.q == row.q && r.flow == row.flow);
+        let beside = coarser.iter().find(|r| r.is_same_discharge(row));
         let coarser = beside.and_then(|r| r.t999);
         // grids are fitted to the cell
         let ratio = beside.map_or(grant.point.ratio(), |r| r.spacing / row.spacing);

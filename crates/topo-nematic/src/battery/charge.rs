@@ -1,7 +1,7 @@
 //! Charging: the nematic relaxes with a pattern on the particle.
 
 use serde::{Deserialize, Serialize};
-use topo_core::{InvalidValue, finite, positive};
+use topo_core::{InvalidValue, finite, in_range, positive};
 
 use super::NematicBattery;
 use super::charging::Charging;
@@ -45,16 +45,21 @@ impl Default for ChargeSettings {
 }
 
 impl ChargeSettings {
-    fn check(&self) -> Result<(), NematicError> {
+    /// Checks every number.
+    ///
+    /// # Errors
+    /// Names the first value out of range and what would be right.
+    pub fn check(&self) -> Result<(), NematicError> {
         if self.seeds.is_empty() {
             return Err(InvalidValue::new("charge.seeds", 0.0, "one tilt at least").into());
         }
         for seed in &self.seeds {
             finite("charge.seeds", *seed)?;
         }
-        finite("charge.seed-azimuth", self.seed_azimuth)?;
+        finite("charge.seed_azimuth", self.seed_azimuth)?;
         positive("charge.tolerance", self.tolerance)?;
-        positive("charge.order-tolerance", self.order_tolerance)?;
+        positive("charge.order_tolerance", self.order_tolerance)?;
+        in_range("charge.max_steps", self.max_steps as f64, 1.0, 1e15)?;
         Ok(())
     }
 }

@@ -4,7 +4,7 @@ mod advance;
 mod progressing;
 
 use serde::{Deserialize, Serialize};
-use topo_core::{StopReason, in_range, positive};
+use topo_core::{StopReason, finite, in_range, positive};
 
 use super::final_state::FinalState;
 use super::hooks::RunHooks;
@@ -41,6 +41,31 @@ impl Default for DischargeSettings {
             ring_threshold: 0.35,
             flow: None,
         }
+    }
+}
+
+impl DischargeSettings {
+    /// Checks every number but those of the flow.
+    ///
+    /// # Errors
+    /// Names the first value out of range and what would be right.
+    pub fn check(&self) -> Result<(), NematicError> {
+        in_range(
+            "discharge.until_released",
+            self.until_released,
+            1e-6,
+            1.0 - 1e-9,
+        )?;
+        positive("discharge.longest", self.longest)?;
+        positive("discharge.first_output", self.first_output)?;
+        in_range(
+            "discharge.outputs_per_decade",
+            self.outputs_per_decade,
+            1e-3,
+            1e6,
+        )?;
+        finite("discharge.ring_threshold", self.ring_threshold)?;
+        Ok(())
     }
 }
 
@@ -81,13 +106,7 @@ impl SwitchedNematic {
         settings: &DischargeSettings,
         hooks: &mut RunHooks<'_>,
     ) -> Result<Discharge, NematicError> {
-        in_range(
-            "discharge.until-released",
-            settings.until_released,
-            1e-6,
-            1.0 - 1e-9,
-        )?;
-        positive("discharge.longest", settings.longest)?;
+        settings.check()?;
         let end = self.final_state(hooks)?;
         match self.charged.battery.accuracy.precision {
             Precision::Double => self.discharge_in::<f64>(settings, end, hooks),

@@ -50,6 +50,28 @@ pub struct SwitchSettings {
     pub ramp: Option<f64>,
 }
 
+impl SwitchSettings {
+    /// Checks the settings for a battery with or without a particle.
+    ///
+    /// # Errors
+    /// A broken pattern or ramp; a switch where there is no particle.
+    pub fn check(&self, has_particle: bool) -> Result<(), NematicError> {
+        if let Some(ramp) = self.ramp {
+            topo_core::positive("switch.ramp", ramp)?;
+        }
+        if !has_particle && self.to != SwitchTarget::Keep {
+            return Err(NematicError::NoParticle {
+                operation: "a switch of the anchoring",
+            });
+        }
+        if let SwitchTarget::Pattern { pattern, anchoring } = &self.to {
+            pattern.check("switch.to.pattern.pattern")?;
+            anchoring.checked("switch.to.pattern.anchoring.weak")?;
+        }
+        Ok(())
+    }
+}
+
 /// A battery whose anchoring has just been switched, with the account of what the switch took.
 #[derive(Debug, Clone)]
 pub struct SwitchedNematic {
@@ -69,21 +91,8 @@ impl ChargedNematic {
     /// # Errors
     /// A broken pattern or ramp; a battery without a particle.
     pub fn switch(&self, settings: &SwitchSettings) -> Result<SwitchedNematic, NematicError> {
-        let mut settings = settings.clone();
-        if let Some(ramp) = settings.ramp {
-            topo_core::positive("switch.ramp", ramp)?;
-        }
-        if self.battery.particle.is_none() && settings.to != SwitchTarget::Keep {
-            return Err(NematicError::NoParticle {
-                operation: "a switch of the anchoring",
-            });
-        }
-        if let SwitchTarget::Pattern { pattern, anchoring } = settings.to {
-            settings.to = SwitchTarget::Pattern {
-                pattern: pattern.checked()?,
-                anchoring: anchoring.checked("switch.to.pattern.anchoring.weak")?,
-            };
-        }
+        settings.check(self.battery.particle.is_some())?;
+        let settings = settings.clone();
         let mut state = self.state.clone();
         let start = if settings.ramp.is_some() {
             self.energy().total()

@@ -2,7 +2,7 @@
 
 use fearless_simd::Level;
 use serde::{Deserialize, Serialize};
-use topo_core::{finite, positive};
+use topo_core::{finite, in_range, positive};
 
 use super::force::{Director, Window};
 use super::observables;
@@ -58,6 +58,30 @@ impl Default for FlowParameters {
 }
 
 impl FlowParameters {
+    /// Checks every number, and the drive and the solver against the sides of `grid`.
+    ///
+    /// # Errors
+    /// [`StokesError`] for parameters outside their domain, drives or a solver that do not fit the sides, or too little memory.
+    pub fn check(&self, grid: &Grid, with_particle: bool) -> Result<(), StokesError> {
+        positive("flow.boundary_residual", self.boundary_residual)?;
+        in_range("flow.solver_tolerance", self.solver_tolerance, 1e-14, 0.1)?;
+        self.drive.check(grid)?;
+        if self.solver == FlowSolver::Spectral
+            && let Some(axis) = (0..2).find(|&axis| grid.faces()[axis] == Faces::Wall)
+        {
+            return Err(StokesError::Walls { axis });
+        }
+        let estimate = FlowCoupling::n_bytes_estimate(grid, with_particle, self);
+        if estimate > self.memory_limit {
+            return Err(StokesError::Memory {
+                estimate,
+                limit: self.memory_limit,
+            });
+        }
+        Ok(())
+    }
+
+    /// Whether the flow in `grid` is found by the spectral solver.
     fn is_spectral(&self, grid: &Grid) -> bool {
         match self.solver {
             FlowSolver::Auto => grid.faces()[..2] == [Faces::Periodic; 2],
@@ -152,16 +176,9 @@ impl FlowCoupling {
         material: &Material,
         parameters: &FlowParameters,
     ) -> Result<Self, StokesError> {
-        let alignment = finite("flow_alignment", material.flow_alignment)?;
-        let viscosity = positive("viscosity", material.viscosity)?;
-        parameters.drive.check(grid)?;
-        let estimate = Self::n_bytes_estimate(grid, particle.is_some(), parameters);
-        if estimate > parameters.memory_limit {
-            return Err(StokesError::Memory {
-                estimate,
-                limit: parameters.memory_limit,
-            });
-        }
+        let alignment = finite("material.flow_alignment", material.flow_alignment)?;
+        let viscosity = positive("material.viscosity", material.viscosity)?;
+        parameters.check(grid, particle.is_some())?;
         let solver: Box<dyn StokesSolver> = if parameters.is_spectral(grid) {
             Box::new(Spectral::new(grid, viscosity)?)
         } else {

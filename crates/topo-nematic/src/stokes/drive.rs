@@ -34,10 +34,10 @@ impl Drive {
     /// do not exist, and mean velocities where walls decide.
     pub fn check(&self, grid: &Grid) -> Result<(), StokesError> {
         for x in self.body_force {
-            finite("body_force", x)?;
+            finite("flow.drive.body_force", x)?;
         }
         for x in self.mean_velocity {
-            finite("mean_velocity", x)?;
+            finite("flow.drive.mean_velocity", x)?;
         }
         let periodic = grid.faces() == [Faces::Periodic; 3];
         if periodic && self.body_force != [0.0; 3] {
@@ -49,7 +49,7 @@ impl Drive {
         for axis in 0..3 {
             for (side, velocity) in ["lower", "upper"].into_iter().zip(self.wall_velocity[axis]) {
                 for x in velocity {
-                    finite("wall_velocity", x)?;
+                    finite("flow.drive.wall_velocity", x)?;
                 }
                 let walled = grid.faces()[axis] == Faces::Wall;
                 if velocity[axis] != 0.0 || !(walled || velocity == [0.0; 3]) {

@@ -1,7 +1,7 @@
 //! Charging: the twisted rod relaxes with its ends fused.
 
 use serde::{Deserialize, Serialize};
-use topo_core::{Interrupt, Schedule, Scheduled, StopReason};
+use topo_core::{Interrupt, Schedule, Scheduled, StopReason, positive};
 
 use super::cut::{CutCandidate, CutSite, cut_candidates};
 use super::record::{CurveRecorder, RunRecord, SampleRecorder, Scales};
@@ -31,6 +31,19 @@ impl Default for ChargeSettings {
     }
 }
 
+impl ChargeSettings {
+    /// Checks every number.
+    ///
+    /// # Errors
+    /// Names the first value out of range and what would be right.
+    pub fn checked(self) -> Result<Self, RodError> {
+        positive("charge.duration", self.duration)?;
+        positive("charge.first_output", self.first_output)?;
+        positive("charge.outputs_per_decade", self.outputs_per_decade)?;
+        Ok(self)
+    }
+}
+
 /// A charged battery: the relaxed closed rod, and how it got there.
 #[derive(Debug, Clone)]
 pub struct ChargedRod {
@@ -52,7 +65,7 @@ impl RodBattery {
         settings: &ChargeSettings,
         interrupt: &Interrupt,
     ) -> Result<ChargedRod, RodError> {
-        topo_core::positive("charge.duration", settings.duration)?;
+        settings.checked()?;
         let state = self.start.clone();
         let mut model = RodModel::new(
             &self.parameters,

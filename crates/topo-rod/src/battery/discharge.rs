@@ -1,7 +1,7 @@
 //! Discharging: the cut rod opens until its elastic energy is released.
 
 use serde::{Deserialize, Serialize};
-use topo_core::{Interrupt, Ledger, Sample, Schedule, Scheduled, StopReason};
+use topo_core::{Interrupt, Ledger, Sample, Schedule, Scheduled, StopReason, in_range, positive};
 
 use super::RodSimulation;
 use super::cut::CutRod;
@@ -34,6 +34,26 @@ impl Default for DischargeSettings {
             outputs_per_decade: 16.0,
             ends: Ends::default(),
         }
+    }
+}
+
+impl DischargeSettings {
+    /// Checks every number, and the ends of a rod whose twist is modelled or not.
+    ///
+    /// # Errors
+    /// Names the first value out of range and what would be right.
+    pub fn checked(self, has_twist: bool) -> Result<Self, RodError> {
+        in_range(
+            "discharge.until_released",
+            self.until_released,
+            1e-6,
+            1.0 - 1e-9,
+        )?;
+        positive("discharge.longest", self.longest)?;
+        positive("discharge.first_output", self.first_output)?;
+        positive("discharge.outputs_per_decade", self.outputs_per_decade)?;
+        self.ends.checked(has_twist)?;
+        Ok(self)
     }
 }
 
@@ -72,14 +92,8 @@ impl CutRod {
         interrupt: &Interrupt,
     ) -> Result<Discharge, RodError> {
         let battery = self.charged.battery();
-        topo_core::in_range(
-            "discharge.until_released",
-            settings.until_released,
-            1e-6,
-            1.0 - 1e-9,
-        )?;
-        topo_core::positive("discharge.longest", settings.longest)?;
         let (parameters, tube) = (battery.parameters(), battery.tube());
+        settings.checked(parameters.twist.is_some())?;
         let state = self.state.clone();
         let mut model = RodModel::new(
             parameters,
