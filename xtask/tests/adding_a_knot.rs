@@ -21,6 +21,8 @@ fn page_adds_nine_forty_two() {
     std::fs::create_dir(folder.path().join("my-knots")).unwrap();
     let file = blocks(&page, "toml").next().unwrap();
     std::fs::write(folder.path().join("my-knots/9_42.toml"), file).unwrap();
+    let scene = blocks(&page, "toml").last().unwrap();
+    std::fs::write(folder.path().join("my-scene.toml"), scene).unwrap();
     let mut outputs = Vec::new();
     for command in blocks(&page, "sh").flat_map(str::lines) {
         let mut words = command.split_whitespace();
@@ -39,7 +41,7 @@ fn page_adds_nine_forty_two() {
         assert!(run.status.success(), "{command}: {complaint}");
         outputs.push(text);
     }
-    let [shown, tightened, _searched, named] = &outputs[..] else {
+    let [shown, tightened, _searched, named, charged] = &outputs[..] else {
         panic!("{} commands on the page", outputs.len())
     };
     assert!(shown.contains("69.4756 (ashton2011)"), "{shown}");
@@ -49,6 +51,11 @@ fn page_adds_nine_forty_two() {
     );
     assert!(named.starts_with("9_42, as in the table"), "{named}");
     assert!(named.contains("consistent") || named.contains("certain"));
+    assert!(
+        charged.contains("9_42") && !charged.contains("warning"),
+        "{charged}"
+    );
+    assert!(folder.path().join("my-results/my-scene/sweep.csv").exists());
     // The length, within the bar of the draft quality.
     let record = std::fs::read_to_string(folder.path().join("my-results/9_42.json")).unwrap();
     let record: serde_json::Value = serde_json::from_str(&record).unwrap();

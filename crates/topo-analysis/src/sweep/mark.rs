@@ -129,3 +129,88 @@ pub(super) fn write(folder: &Path, text: &str) -> Result<(), AnalysisError> {
     }
     Ok(write_atomic_bytes(&path, text.as_bytes())?)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const HERE: &str =
+        "[rod]\nknot = [\"3_1\"]\ntwist = [0.0, 1.0]\n[accuracy]\ntolerance = 0.01\n";
+
+    fn case(folder: &Path, name: &str, fingerprint: &str, results: u32) {
+        let folder = folder.join(name);
+        std::fs::create_dir_all(&folder).unwrap();
+        let run = serde_json::json!({"fingerprint": fingerprint, "versions": {"results": results}});
+        std::fs::write(folder.join("run.json"), run.to_string()).unwrap();
+    }
+
+    fn known() -> Vec<(String, String)> {
+        [("a", "1"), ("b", "2")]
+            .map(|(n, f)| (n.to_owned(), f.to_owned()))
+            .to_vec()
+    }
+
+    fn refused(folder: &Path) -> Option<String> {
+        check(folder, HERE, &known(), 5)
+            .err()
+            .map(|e| e.to_string())
+    }
+
+    #[test]
+    fn a_folder_of_the_same_scene_is_gone_on_with() {
+        let dir = tempfile::tempdir().unwrap();
+        let folder = dir.path();
+        assert_eq!(refused(&folder.join("not there")), None);
+        assert_eq!(refused(folder), None);
+        // parts of a sweep, merged by hand: no scene beside them
+        case(folder, "a", "1", 5);
+        assert_eq!(refused(folder), None);
+        write(folder, HERE).unwrap();
+        // of an earlier program, and damaged: computed again
+        case(folder, "b", "old", 4);
+        assert_eq!(refused(folder), None);
+        std::fs::write(folder.join("b/run.json"), "{").unwrap();
+        assert_eq!(refused(folder), None);
+        // what is no case is nobody's business
+        std::fs::create_dir(folder.join("export")).unwrap();
+        std::fs::write(folder.join("notes.txt"), "").unwrap();
+        assert_eq!(refused(folder), None);
+    }
+
+    #[test]
+    fn another_scene_is_refused_with_the_keys_that_differ() {
+        let dir = tempfile::tempdir().unwrap();
+        let folder = dir.path();
+        case(folder, "a", "other", 5);
+        let text = refused(folder).unwrap();
+        assert!(
+            text.contains("1 case that this scene has not, such as a"),
+            "{text}"
+        );
+        assert!(text.contains("--out"), "{text}");
+        write(
+            folder,
+            &HERE.replace("0.01", "0.02").replace("[0.0, 1.0]", "[0.0]"),
+        )
+        .unwrap();
+        let text = refused(folder).unwrap();
+        for key in [
+            "accuracy.tolerance = 0.02 there, 0.01 here",
+            "rod.twist = [0.0] there, [0.0,1.0] here",
+        ] {
+            assert!(text.contains(key), "{text}");
+        }
+    }
+
+    #[test]
+    fn results_of_an_earlier_program_are_recognised() {
+        let dir = tempfile::tempdir().unwrap();
+        case(dir.path(), "a", "1", 5);
+        case(dir.path(), "named_otherwise_then", "1", 4);
+        let text = refused(dir.path()).unwrap();
+        assert!(
+            text.contains("results version 4 (now 5)") && text.contains("named_otherwise_then"),
+            "{text}"
+        );
+    }
+}
