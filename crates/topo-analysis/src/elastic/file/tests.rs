@@ -41,7 +41,7 @@ fn bad_scenes_are_refused_with_key_value_and_remedy() {
         ),
         (
             "[rod]\nknot = \"3_1\"\n[accuracy]\nedges = 4",
-            vec!["4 edges", "8"],
+            vec!["accuracy.edges = 4", "8 edges"],
         ),
         (
             "[rod]\nknot = \"3_1\"\n[rod.friction]\nratio = -1",
@@ -189,15 +189,15 @@ fn a_scene_names_its_folder_and_its_knots() {
     let again = ElasticScene::parse(&scene.text(), Path::new("some/where/my scene.toml"));
     assert_eq!(again.unwrap(), scene);
     let folder = tempfile::tempdir().unwrap();
-    let mine = "name = \"my_knot\"\naliases = []\ncrossing_number = 3\nchirality = \"chiral\"\nbraid = [1, 1, 1]\n[invariants]\nalexander = [1, -1, 1]\ndeterminant = 3\nsignature = -2\njones = { lowest = 1, coefficients = [1, 0, 1, -1] }\n";
-    std::fs::write(folder.path().join("my_knot.toml"), mine).unwrap();
+    let mine = "name = \"own_knot\"\naliases = []\ncrossing_number = 3\nchirality = \"chiral\"\nbraid = [1, 1, 1]\n[invariants]\nalexander = [1, -1, 1]\ndeterminant = 3\nsignature = -2\njones = { lowest = 1, coefficients = [1, 0, 1, -1] }\n";
+    std::fs::write(folder.path().join("own_knot.toml"), mine).unwrap();
     let built_in = parse(KNOT).unwrap().knot_table().unwrap();
     let elsewhere = ElasticScene {
         own_knots: Some(OwnKnots::at(folder.path())),
         ..scene
     };
     let table = elsewhere.knot_table().unwrap();
-    assert!(table.get("my_knot").is_ok() && built_in.get("my_knot").is_err());
+    assert!(table.get("own_knot").is_ok() && built_in.get("own_knot").is_err());
     assert!(ElasticScene::parse(KNOT, Path::new("figures.toml")).is_err());
 }
 
@@ -260,6 +260,10 @@ fn nothing_asked_for_is_ignored_and_nothing_absurd_is_begun() {
             ["line 3: rod.reading = []", "leave the key out"],
         ),
         ("reading = [\"hard\", \"soft\"]", ["line 3", "`soft`"]),
+        (
+            "slenderness = [50,\n 40]\nreading = \"soft\"",
+            ["line 5", "`soft`"],
+        ),
         // out of range, also as one of several
         (
             "slenderness = [50, -1]",
