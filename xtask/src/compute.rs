@@ -1,12 +1,13 @@
 //! Where commands meet the physics: the tables behind figures, and a user's own scene.
 
 mod by_wish;
-mod estimate;
+pub mod estimate;
 mod nematic;
 
 use crate::error::XtaskError;
-use crate::figures::Quality;
+use crate::figures::{Figure, Quality};
 use crate::interrupt;
+use crate::movies::Movie;
 use crate::progress::Progress;
 use crate::provenance::Provenance;
 use std::path::Path;
@@ -41,6 +42,10 @@ pub struct Order<'a> {
     pub nematic: bool,
     /// Whether the table of knots is needed.
     pub knots: bool,
+    /// Figures drawn of them afterwards.
+    pub figures: &'a [Figure],
+    /// Movies made of them afterwards.
+    pub movies: &'a [Movie],
 }
 
 /// Computes the tables, reusing finished runs, and notes presets, seeds and times.
@@ -263,7 +268,7 @@ fn elastic_scene(
     if let Some(grant) = &grant {
         by_wish::tell_grant(grant, "edges");
     }
-    tell_estimate(&topo_analysis::estimate_sweep(&scene, &table, settings)?);
+    estimate::tell(&estimate::of_elastic(&scene, &table, settings)?);
     let report = sweep(&scene, &table, settings)?;
     println!("knot    theta'h     cut    E/E0      Wr     t50     t90     t95     t99  untied");
     let cell = |t: Option<f64>| t.map_or_else(|| format!("{:>7}", "-"), |t| format!("{t:7.3}"));
@@ -294,13 +299,6 @@ fn elastic_scene(
     }
     println!("written to {}", scene.results(&settings.out).display());
     Ok(())
-}
-
-/// Tells on the terminal what the cases left will take.
-fn tell_estimate(estimate: &Estimate) {
-    if estimate.n_cases > 0 {
-        eprintln!("estimate: {}", estimate::text(estimate));
-    }
 }
 
 /// Tells what they took.
@@ -345,7 +343,9 @@ impl Teller {
         match (event, progress) {
             (
                 Event::Begin {
-                    n_cases, n_reused, ..
+                    n_cases,
+                    n_reused,
+                    estimate,
                 },
                 _,
             ) => {
@@ -353,7 +353,7 @@ impl Teller {
                     eprintln!("{n_reused} of {n_cases} cases are finished already");
                 }
                 self.progress
-                    .get_or_init(|| Progress::start(self.label, n_cases - n_reused));
+                    .get_or_init(|| Progress::expecting(self.label, n_cases - n_reused, estimate));
             }
             (Event::Replaced { names, reason }, _) => {
                 let shown = names.iter().take(3).cloned().collect::<Vec<_>>().join(", ");
@@ -370,8 +370,17 @@ impl Teller {
             (Event::Working { name, what }, Some(progress)) => {
                 progress.working(&format!("{name}: {what}"));
             }
-            (Event::Case { name, warnings, .. }, Some(progress)) => {
-                progress.done(name);
+            (Event::Knot { .. }, Some(progress)) => progress.restart(),
+            (
+                Event::Case {
+                    name,
+                    expected,
+                    warnings,
+                    ..
+                },
+                Some(progress),
+            ) => {
+                progress.done_of(name, expected);
                 if !warnings.is_empty() {
                     progress.note(&format!("warning: {name}: {warnings}"));
                 }

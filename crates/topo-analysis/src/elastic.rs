@@ -3,6 +3,7 @@
 mod accuracy;
 mod case;
 mod choices;
+mod cost;
 mod file;
 mod frames;
 mod imperfection;

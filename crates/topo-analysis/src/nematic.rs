@@ -1,6 +1,7 @@
 //! Nematic scenes: colloids, charged, switched and followed; their tables and what these say.
 
 mod case;
+mod cost;
 mod field;
 mod file;
 mod frames;

@@ -30,6 +30,8 @@ pub fn run(args: &FiguresArgs) -> Result<(), XtaskError> {
         elastic: chosen.iter().any(|f| f.table.starts_with("elastic/")),
         nematic: chosen.iter().any(|f| f.table.starts_with("nematic/")),
         knots: chosen.iter().any(|f| f.table.starts_with("knots/")),
+        figures: &chosen,
+        movies: &movies,
     };
     compute::tables(&order, &interrupt, &mut record)?;
     if let Some(shard) = args.shard {
@@ -48,7 +50,7 @@ pub fn run(args: &FiguresArgs) -> Result<(), XtaskError> {
     };
     let progress = Progress::start("drawing", chosen.len());
     let mut done: Vec<Done> = Vec::new();
-    for figure in chosen {
+    for &figure in &chosen {
         interrupt::check(&interrupt)?;
         done.push(figures::draw(figure, &context)?);
         progress.done(figure.name);
@@ -56,7 +58,7 @@ pub fn run(args: &FiguresArgs) -> Result<(), XtaskError> {
     progress.finish();
     let n_drawn = done.len();
     let mut shown_movies: Vec<(Movie, String)> = Vec::new();
-    for movie in movies {
+    for &movie in &movies {
         let progress = Progress::start(movie.name, movies::N_FRAMES);
         let start = Instant::now();
         let stage = movies::Stage {

@@ -3,8 +3,8 @@
 use super::{Teller, by_wish};
 use crate::error::XtaskError;
 use topo_analysis::{
-    NematicReport, NematicScene, SweepSettings, errors_of_colloids, estimate_nematic_sweep,
-    nematic_resonance, run_nematic_sweep,
+    NematicReport, NematicScene, SweepSettings, errors_of_colloids, nematic_resonance,
+    run_nematic_sweep,
 };
 
 /// Runs a user's scene and prints its table.
@@ -14,7 +14,7 @@ pub fn scene(scene: &NematicScene, settings: &SweepSettings) -> Result<(), Xtask
     if let Some(grant) = &grant {
         by_wish::tell_grant(grant, "ξ_N a cell");
     }
-    super::tell_estimate(&estimate_nematic_sweep(scene, settings)?);
+    super::estimate::tell(&super::estimate::of_nematic(scene, settings)?);
     let report = sweep(scene, settings)?;
     println!(
         "  q flow  F charged  F after  order  ring/R mode     t50     t90     t99   t99.9  CPU s   MB"

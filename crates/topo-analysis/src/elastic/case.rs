@@ -41,7 +41,7 @@ pub(crate) fn fingerprint(scene: &ElasticScene, case: &ElasticCase, entry: &Knot
 }
 
 /// Whether a twisted rod may start from the tight curve or from its mirror image, being the same knot.
-fn starts_from_two_images(case: &ElasticCase, entry: &KnotEntry) -> bool {
+pub(super) fn starts_from_two_images(case: &ElasticCase, entry: &KnotEntry) -> bool {
     entry.chirality == Chirality::Amphichiral && case.rod.twist.is_some_and(|twist| twist != 0.0)
 }
 

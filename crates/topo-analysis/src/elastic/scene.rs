@@ -8,8 +8,8 @@ use topo_knots::TightenSettings;
 use topo_rod::{Accuracy, ChargeSettings, DischargeSettings, RodParameters};
 
 use super::choices::{Cuts, Numbers, Preset};
+use super::cost::weight;
 use super::file::defaults;
-use super::sweep::weight;
 use crate::AnalysisError;
 use crate::table::SweepRow;
 use crate::timeline::TimelineSettings;

@@ -6,13 +6,14 @@ use rayon::prelude::*;
 use topo_knots::KnotTable;
 
 use super::case::{self, CaseJob, RESULTS_VERSION, fingerprint};
-use super::choices::Cuts;
+use super::cost::cost_of;
 use super::scene::{ElasticCase, ElasticScene};
 use crate::AnalysisError;
 use crate::cost::{Cost, Estimate, Speed, Stopwatch, estimate, threads};
 use crate::folder::{Earlier, finished, tell_replaced, writable};
 use crate::knots::{Shapes, tight_shapes};
 use crate::progress::{Event, SweepSettings, with_jobs};
+use crate::system::System;
 use crate::table::{SweepRow, write_table};
 
 /// What a sweep leaves behind.
@@ -50,8 +51,13 @@ pub fn run_sweep(
 ) -> Result<SweepReport, AnalysisError> {
     let folder = scene.results(&settings.out);
     writable(&folder)?;
-    let Plan { cases, found, todo } = plan(scene, table, settings)?;
-    let estimate = cost(scene, settings, &found, &todo);
+    let Plan {
+        cases,
+        costs,
+        found,
+        todo,
+    } = plan(scene, table, settings)?;
+    let estimate = cost(settings, &costs, &found, &todo);
     let n_reused = found.iter().filter(|f| f.is_finished()).count();
     let n_todo = estimate.n_cases;
     progress(Event::Begin {
@@ -84,9 +90,10 @@ pub fn run_sweep(
             let clock = Stopwatch::start();
             let computed: Vec<Option<Vec<SweepRow>>> = cases
                 .par_iter()
+                .zip(&costs)
                 .zip(&todo)
                 .with_max_len(1)
-                .map(|(case, todo)| {
+                .map(|((case, cost), todo)| {
                     if !todo || settings.interrupt.is_requested() {
                         return Ok(None);
                     }
@@ -110,6 +117,7 @@ pub fn run_sweep(
                         progress(Event::Case {
                             name: &case.name(),
                             n_done,
+                            expected: cost.seconds,
                             warnings: &warnings.join(";"),
                         });
                     }
@@ -147,13 +155,16 @@ pub fn estimate_sweep(
     table: &KnotTable,
     settings: &SweepSettings,
 ) -> Result<Estimate, AnalysisError> {
-    let Plan { found, todo, .. } = plan(scene, table, settings)?;
-    Ok(cost(scene, settings, &found, &todo))
+    let Plan {
+        costs, found, todo, ..
+    } = plan(scene, table, settings)?;
+    Ok(cost(settings, &costs, &found, &todo))
 }
 
 /// The cases of a scene, what is left of them, and which are computed now.
 struct Plan {
     cases: Vec<ElasticCase>,
+    costs: Vec<Cost>,
     found: Vec<Earlier<SweepRow>>,
     todo: Vec<bool>,
 }
@@ -166,6 +177,7 @@ fn plan(
     let folder = scene.results(&settings.out);
     let cases = scene.cases(table)?;
     let mut found = Vec::with_capacity(cases.len());
+    let mut costs = Vec::with_capacity(cases.len());
     for (k, case) in cases.iter().enumerate() {
         let entry = table.get(&case.knot)?;
         let mark = fingerprint(scene, case, &entry);
@@ -174,71 +186,44 @@ fn plan(
         } else {
             finished(&folder.join(case.name()), &mark, RESULTS_VERSION)
         });
+        let n_cuts = match &found[k] {
+            Earlier::Finished(rows) => Some(rows.len()),
+            _ => None,
+        };
+        costs.push(cost_of(scene, case, &entry, n_cuts));
     }
     let todo = (0..cases.len())
         .map(|k| !found[k].is_finished() && settings.takes(k))
         .collect();
-    Ok(Plan { cases, found, todo })
+    Ok(Plan {
+        cases,
+        costs,
+        found,
+        todo,
+    })
 }
 
 fn cost(
-    scene: &ElasticScene,
     settings: &SweepSettings,
+    costs: &[Cost],
     found: &[Earlier<SweepRow>],
     todo: &[bool],
 ) -> Estimate {
     let taken: Vec<(f64, f64)> = found
         .iter()
-        .filter_map(|f| match f {
-            Earlier::Finished(rows) => Some((
-                case_cost(scene, Some(rows.len())).seconds,
-                rows.iter().map(|r| r.cpu_seconds).sum(),
-            )),
+        .zip(costs)
+        .filter_map(|(f, cost)| match f {
+            Earlier::Finished(rows) => {
+                Some((cost.seconds, rows.iter().map(|r| r.cpu_seconds).sum()))
+            }
             _ => None,
         })
         .collect();
-    let costs = vec![case_cost(scene, None); todo.iter().filter(|t| **t).count()];
-    estimate(&costs, Speed::of(&taken), threads(settings.jobs), true)
+    let left = costs.iter().zip(todo).filter(|(_, todo)| **todo);
+    let costs: Vec<Cost> = left.map(|(cost, _)| *cost).collect();
+    let speed = Speed::of(System::Rod, &taken);
+    estimate(&costs, speed, threads(settings.jobs), true)
 }
-
-/// Cost of a charge with its discharges, as measured over the published knots and twists.
-fn case_cost(scene: &ElasticScene, n_cuts: Option<usize>) -> Cost {
-    let edges = scene.rod.n_edges as f64 / 200.0;
-    let tolerance = (1e-3 / scene.accuracy.tolerance.max(1e-9)).max(1e-3);
-    let n_cuts = match (n_cuts, scene.cuts) {
-        (Some(n), _) => n as f64,
-        (None, Cuts::Argmax) => 1.0,
-        (None, Cuts::NearTies) => MEAN_NEAR_TIES,
-        (None, Cuts::All(k)) => k as f64,
-    };
-    let one = edges.powf(EDGES_POWER) * tolerance.powf(TOLERANCE_POWER);
-    Cost {
-        seconds: one * (CHARGE_SECONDS + n_cuts * DISCHARGE_SECONDS),
-        bytes: (BYTES * edges) as u64,
-    }
-}
-
-/// Cost of a case of a scene, over that of a charge with one discharge.
-pub(super) fn weight(scene: &ElasticScene) -> f64 {
-    let once = ElasticScene {
-        cuts: Cuts::Argmax,
-        ..scene.clone()
-    };
-    case_cost(scene, None).seconds / case_cost(&once, None).seconds
-}
-
-/// Processor seconds of a charge at N = 200 and tolerance 1e-3 h.
-const CHARGE_SECONDS: f64 = 0.12;
-/// The same of a discharge.
-const DISCHARGE_SECONDS: f64 = 0.49;
-/// Growth with the number of edges.
-const EDGES_POWER: f64 = 1.65;
-/// Growth with the inverse of the tolerance.
-const TOLERANCE_POWER: f64 = 0.25;
-/// Near-tied cuts of a case, on average over the published sweep.
-const MEAN_NEAR_TIES: f64 = 4.5;
-/// Bytes that a case holds at N = 200.
-const BYTES: f64 = 6e7;
 
 #[cfg(test)]
 mod tests {

@@ -8,7 +8,7 @@ use topo_nematic::{
     SurfacePattern, SwitchSettings,
 };
 
-use super::sweep::weight;
+use super::cost::weight;
 use super::table::NematicRow;
 use crate::AnalysisError;
 use crate::elastic::Preset;

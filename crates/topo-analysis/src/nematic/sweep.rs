@@ -3,18 +3,19 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
-use topo_nematic::{FlowCoupling, NematicBattery, NematicParameters, Progress, Threads};
+use topo_nematic::{NematicBattery, Progress, Threads};
 
 use super::case::{self, CaseRun, RESULTS_VERSION, fingerprint, forget_others};
+use super::cost::case_cost;
 use super::field;
 use super::scene::{NematicCase, NematicScene};
 use super::table::NematicRow;
 use crate::AnalysisError;
-use crate::cost::{Cost, Estimate, Speed, Stopwatch, estimate, threads};
+use crate::cost::{Estimate, Speed, Stopwatch, estimate, threads};
 use crate::folder::{Earlier, finished, tell_replaced, writable};
 use crate::progress::{Event, SweepSettings, with_jobs};
+use crate::system::System;
 use crate::table::write_table;
-use crate::tradeoff::MEASURED;
 
 /// Cases that hold more than this each run one after another, all threads in each.
 const BIG_CASE: u64 = 1 << 30;
@@ -57,6 +58,7 @@ pub fn run_nematic_sweep(
     let Plan {
         found,
         todo,
+        expected,
         together,
         estimate,
     } = plan(scene, settings, &cases)?;
@@ -81,7 +83,7 @@ pub fn run_nematic_sweep(
     );
     let each = if together { Threads::One } else { Threads::All };
     let n_done = AtomicUsize::new(n_reused);
-    let one = |(case, todo): (&NematicCase, bool)| -> Result<_, AnalysisError> {
+    let one = |case: &NematicCase, todo: bool, expected: f64| -> Result<_, AnalysisError> {
         if !todo || settings.interrupt.is_requested() {
             return Ok(None);
         }
@@ -114,6 +116,7 @@ pub fn run_nematic_sweep(
             progress(Event::Case {
                 name: &name,
                 n_done: n_done.fetch_add(1, Ordering::Relaxed) + 1,
+                expected,
                 warnings: &row.warnings,
             });
         }
@@ -126,7 +129,7 @@ pub fn run_nematic_sweep(
     }
     let clock = Stopwatch::start();
     let mut computed: Vec<(usize, Option<NematicRow>)> = with_jobs(settings.jobs, || {
-        let of = |&k: &usize| Ok((k, one((&cases[k], todo[k]))?));
+        let of = |&k: &usize| Ok((k, one(&cases[k], todo[k], expected[k])?));
         if together {
             order.par_iter().with_max_len(1).map(of).collect()
         } else {
@@ -167,6 +170,8 @@ pub fn estimate_nematic_sweep(
 struct Plan {
     found: Vec<Earlier<NematicRow>>,
     todo: Vec<bool>,
+    /// Processor seconds of each on the models' machine; 0 where nobody asks.
+    expected: Vec<f64>,
     /// Whether cases run side by side.
     together: bool,
     estimate: Estimate,
@@ -194,7 +199,8 @@ fn plan(
         .map(|k| !found[k].is_finished() && settings.takes(k))
         .collect();
     let (mut costs, mut taken) = (Vec::new(), Vec::new());
-    for ((case, found), todo) in cases.iter().zip(&found).zip(&todo) {
+    let mut expected = vec![0.0; cases.len()];
+    for (k, ((case, found), todo)) in cases.iter().zip(&found).zip(&todo).enumerate() {
         if !todo && !found.is_finished() {
             continue;
         }
@@ -205,6 +211,7 @@ fn plan(
             }
         })?;
         let cost = case_cost(case, &battery);
+        expected[k] = cost.seconds;
         match found {
             Earlier::Finished(rows) => {
                 let seconds = rows.iter().map(|r| r.cpu_seconds).sum();
@@ -216,64 +223,16 @@ fn plan(
     let largest = costs.iter().map(|c| c.bytes).max().unwrap_or(0);
     let together = largest <= BIG_CASE && costs.len() > 1;
     // with all threads in a case, its own seconds are not those of all threads
-    let speed = Speed::of(if together { &taken } else { &[] });
+    let speed = Speed::of(System::Nematic, if together { &taken } else { &[] });
     let estimate = estimate(&costs, speed, threads(settings.jobs), together);
     Ok(Plan {
         found,
         todo,
+        expected,
         together,
         estimate,
     })
 }
-
-/// Cost of a charge with its discharge, as measured for q = 1 to 12 at radii 15, 25 and 52.5.
-fn case_cost(case: &NematicCase, battery: &NematicBattery) -> Cost {
-    let cells = battery.grid().n_cells() as f64 / 1e6;
-    // Strong charges buckle, and buckled discharges take more steps, each of which a flow makes dear.
-    let q = f64::from(case.q.min(20));
-    let (seconds, flow_bytes) = match &case.flow {
-        None => (STILL_SECONDS * (0.7 + 0.05 * q), 0),
-        Some(flow) => (
-            FLOWING_SECONDS * (0.6 + 0.08 * q),
-            FlowCoupling::n_bytes_estimate(battery.grid(), battery.particle().is_some(), flow),
-        ),
-    };
-    Cost {
-        seconds: seconds * cells.powf(CELLS_POWER),
-        bytes: battery.memory().total() + flow_bytes,
-    }
-}
-
-/// Cost of all cases of a scene, in units of the middle one that accuracy was measured on, whatever the spacing.
-pub(super) fn weight(scene: &NematicScene) -> Result<f64, AnalysisError> {
-    let measured = NematicCase {
-        q: MEASURED.q.unsigned_abs(),
-        nematic: NematicParameters {
-            radius: MEASURED.radius,
-            spacing: scene.nematic.spacing,
-            cell: MEASURED.cell,
-            ..NematicParameters::default()
-        },
-        flow: None,
-    };
-    let cost = |case: &NematicCase| -> Result<f64, AnalysisError> {
-        let battery = NematicBattery::new(&case.nematic, &scene.accuracy);
-        let battery = battery.map_err(|source| AnalysisError::Nematic {
-            case: scene.blank_row(case).case_name(),
-            source,
-        })?;
-        Ok(case_cost(case, &battery).seconds)
-    };
-    let all = scene.cases().iter().map(cost).sum::<Result<f64, _>>()?;
-    Ok(all / cost(&measured)?)
-}
-
-/// Processor seconds of a case of a million cells without flow.
-const STILL_SECONDS: f64 = 25.0;
-/// The same with flow.
-const FLOWING_SECONDS: f64 = 130.0;
-/// Growth with the number of cells.
-const CELLS_POWER: f64 = 1.22;
 
 #[cfg(test)]
 mod tests {
