@@ -178,14 +178,14 @@ pub fn accuracy(preset: Preset, settings: &SweepSettings) -> Result<(), XtaskErr
     interrupt::check(stop)?;
     let path = settings.out.join("accuracy.csv");
     write_table(&path, &rows)?;
-    println!(
+    say!(
         "knot    theta'h     cut     t50   error      t99   error  E/E_ref   CPU s  CPU s of reference"
     );
     for r in &rows {
         let cell = |t: Option<f64>| t.map_or_else(|| "      -".to_owned(), |t| format!("{t:7.3}"));
         let error =
             |e: Option<f64>| e.map_or_else(|| "      -".to_owned(), |e| format!("{e:+6.2}%"));
-        println!(
+        say!(
             "{:6} {:+8.2} {:7.4} {} {}  {} {} {:8.4} {:7.2} {:7.2}",
             r.knot,
             r.twist,
@@ -213,13 +213,13 @@ pub fn accuracy(preset: Preset, settings: &SweepSettings) -> Result<(), XtaskErr
     ] {
         let sizes = || errors.iter().map(|e| e.abs());
         if let (Some(median), Some(most)) = (quantile(sizes(), 0.5), quantile(sizes(), 0.9)) {
-            println!(
+            say!(
                 "{name}: error of {} cases, median {median:.2} %, 90th percentile {most:.2} %",
                 errors.len()
             );
         }
     }
-    println!("written to {}", path.display());
+    say!("written to {}", path.display());
     Ok(())
 }
 
@@ -270,10 +270,10 @@ fn elastic_scene(
     }
     estimate::tell(&estimate::of_elastic(&scene, &table, settings)?);
     let report = sweep(&scene, &table, settings)?;
-    println!("knot    theta'h     cut    E/E0      Wr     t50     t90     t95     t99  untied");
+    say!("knot    theta'h     cut    E/E0      Wr     t50     t90     t95     t99  untied");
     let cell = |t: Option<f64>| t.map_or_else(|| format!("{:>7}", "-"), |t| format!("{t:7.3}"));
     for r in &report.rows {
-        println!(
+        say!(
             "{:6} {:+8.3} {:7.4} {:7.4} {:+7.3} {} {} {} {} {}",
             r.knot,
             r.twist,
@@ -287,7 +287,7 @@ fn elastic_scene(
             cell(r.t_untie)
         );
         for warning in r.warnings.split(';').filter(|w| !w.is_empty()) {
-            println!("       warning: {warning}");
+            say!("       warning: {warning}");
         }
     }
     tell_taken(&report.estimate, report.wall_seconds);
@@ -297,14 +297,14 @@ fn elastic_scene(
         let rows = errors_of_rods(grant, &report.rows, &coarser.rows);
         by_wish::tell_errors(grant, &rows, &scene.results(&settings.out))?;
     }
-    println!("written to {}", scene.results(&settings.out).display());
+    say!("written to {}", scene.results(&settings.out).display());
     Ok(())
 }
 
 /// Tells what they took.
 fn tell_taken(estimate: &Estimate, seconds: f64) {
     if estimate.n_cases > 0 {
-        println!(
+        say!(
             "{} cases in {}; estimated {}",
             estimate.n_cases,
             estimate::duration(seconds),
@@ -350,7 +350,7 @@ impl Teller {
                 _,
             ) => {
                 if n_reused > 0 {
-                    eprintln!("{n_reused} of {n_cases} cases are finished already");
+                    note!("{n_reused} of {n_cases} cases are finished already");
                 }
                 self.progress
                     .get_or_init(|| Progress::expecting(self.label, n_cases - n_reused, estimate));
@@ -364,7 +364,7 @@ impl Teller {
                 );
                 match progress {
                     Some(progress) => progress.note(&text),
-                    None => eprintln!("{text}"),
+                    None => note!("{text}"),
                 }
             }
             (Event::Working { name, what }, Some(progress)) => {

@@ -1,5 +1,8 @@
 //! The commands of the topo workspace: `cargo xtask --help` lists them.
 
+// these panic when nobody reads what they write: `say!` and `note!` do not
+#![deny(clippy::print_stdout, clippy::print_stderr)]
+
 #[macro_use]
 mod say;
 

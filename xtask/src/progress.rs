@@ -90,7 +90,7 @@ impl Progress {
             }
             None if state.said.elapsed() >= PAUSE || state.work.is_done() => {
                 state.said = Instant::now();
-                eprintln!("{}: {}, {text}", self.label, state.work);
+                note!("{}: {}, {text}", self.label, state.work);
             }
             None => {}
         }
@@ -104,7 +104,7 @@ impl Progress {
             Some(bar) => bar.set_message(text),
             None if state.said.elapsed() >= LONG_PAUSE => {
                 state.said = Instant::now();
-                eprintln!("{}: {}, {text}", self.label, state.work);
+                note!("{}: {}, {text}", self.label, state.work);
             }
             None => {}
         }
@@ -114,7 +114,7 @@ impl Progress {
     pub fn note(&self, text: &str) {
         match &self.bar {
             Some(bar) => bar.println(text),
-            None => eprintln!("{text}"),
+            None => note!("{text}"),
         }
     }
 
@@ -124,7 +124,7 @@ impl Progress {
         let seconds = state.start.elapsed().as_secs_f64();
         if let Some(bar) = &self.bar {
             bar.finish_and_clear();
-            eprintln!("{:>12} {} in {seconds:.1} s", self.label, state.work.n());
+            note!("{:>12} {} in {seconds:.1} s", self.label, state.work.n());
         }
         seconds
     }

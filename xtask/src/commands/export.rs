@@ -23,8 +23,8 @@ pub fn run(args: &ExportArgs) -> Result<(), XtaskError> {
     let folder = args.to.clone().unwrap_or_else(|| args.case.join("export"));
     let made = export::write(&args.case, &folder, &wanted)?;
     for note in &made.notes {
-        println!("note: {note}");
+        say!("note: {note}");
     }
-    println!("{} files written to {}", made.files.len(), folder.display());
+    say!("{} files written to {}", made.files.len(), folder.display());
     Ok(())
 }

@@ -35,7 +35,7 @@ pub fn run(args: &FiguresArgs) -> Result<(), XtaskError> {
     };
     compute::tables(&order, &interrupt, &mut record)?;
     if let Some(shard) = args.shard {
-        println!(
+        say!(
             "part {shard} is computed; put the case folders of all parts below one folder and run \
              the command without --shard to draw"
         );
@@ -69,7 +69,7 @@ pub fn run(args: &FiguresArgs) -> Result<(), XtaskError> {
         };
         let finding = movies::draw(movie, &stage)?;
         progress.finish();
-        println!("{}: {finding}", movie.name);
+        say!("{}: {finding}", movie.name);
         record
             .wall_seconds
             .insert(movie.name.to_owned(), start.elapsed().as_secs_f64());
@@ -124,8 +124,8 @@ pub fn run(args: &FiguresArgs) -> Result<(), XtaskError> {
     };
     gallery::write(results, &page)?;
     for d in &done[..n_drawn] {
-        println!("{}: {}", d.figure.name, d.finding);
+        say!("{}: {}", d.figure.name, d.finding);
     }
-    println!("gallery: {}", results.join("index.html").display());
+    say!("gallery: {}", results.join("index.html").display());
     Ok(())
 }

@@ -125,14 +125,14 @@ fn drawing_factor(quality: Quality) -> f64 {
 /// Tells the estimate of a command on the terminal.
 pub fn tell(stages: &Stages) {
     if let [(_, only)] = stages[..] {
-        eprintln!("estimate: {}", text("cases", &only));
+        note!("estimate: {}", text("cases", &only));
         return;
     }
     for (name, estimate) in stages {
-        eprintln!("estimate, {name}: {}", text(name, estimate));
+        note!("estimate, {name}: {}", text(name, estimate));
     }
     if let Some(all) = together(stages) {
-        eprintln!("estimate, together: {}", duration(all.wall_seconds));
+        note!("estimate, together: {}", duration(all.wall_seconds));
     }
 }
 

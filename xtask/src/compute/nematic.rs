@@ -16,12 +16,12 @@ pub fn scene(scene: &NematicScene, settings: &SweepSettings) -> Result<(), Xtask
     }
     super::estimate::tell(&super::estimate::of_nematic(scene, settings)?);
     let report = sweep(scene, settings)?;
-    println!(
+    say!(
         "  q flow  F charged  F after  order  ring/R mode     t50     t90     t99   t99.9  CPU s   MB"
     );
     for r in &report.rows {
         let time = |t: Option<f64>| t.map_or_else(|| format!("{:>7}", "-"), |t| format!("{t:7.2}"));
-        println!(
+        say!(
             "{:3} {:>4} {:10.2} {:8.2} {:6.4} {:7} {:>4} {} {} {} {} {:6.1} {:4.0}",
             r.q,
             r.flow,
@@ -40,7 +40,7 @@ pub fn scene(scene: &NematicScene, settings: &SweepSettings) -> Result<(), Xtask
             r.peak_bytes as f64 / 1e6
         );
         for warning in r.warnings.split(';').filter(|w| !w.is_empty()) {
-            println!("       warning: {warning}");
+            say!("       warning: {warning}");
         }
     }
     for flow in ["off", "on"] {
@@ -52,7 +52,7 @@ pub fn scene(scene: &NematicScene, settings: &SweepSettings) -> Result<(), Xtask
             .collect();
         if rows.len() > 2 {
             let found = nematic_resonance(&rows);
-            println!(
+            say!(
                 "flow {flow}: q_c = {}, 50 % rate {}, 99.9 % rate largest at q = {}",
                 found.q_c.map_or("none".to_owned(), |q| q.to_string()),
                 if found.half_rate_is_monotonic {
@@ -72,7 +72,7 @@ pub fn scene(scene: &NematicScene, settings: &SweepSettings) -> Result<(), Xtask
         let rows = errors_of_colloids(grant, &report.rows, &coarser.rows);
         by_wish::tell_errors(grant, &rows, &scene.results(&settings.out))?;
     }
-    println!("written to {}", scene.results(&settings.out).display());
+    say!("written to {}", scene.results(&settings.out).display());
     Ok(())
 }
 
