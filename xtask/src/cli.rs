@@ -5,6 +5,7 @@ use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
 use topo_analysis::Shard;
 
+mod count;
 mod knot;
 
 pub use knot::{IdentifyArgs, KnotArgs, KnotCommand, KnotQuality, TightenArgs};
@@ -189,7 +190,7 @@ pub struct WorkArgs {
     #[arg(long, value_name = "DIR", default_value = "results")]
     pub out: PathBuf,
     /// Number of threads; all processors when left out.
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = count::from(1, count::MOST_JOBS))]
     pub jobs: Option<usize>,
     /// Compute everything anew.
     #[arg(long)]
@@ -205,7 +206,7 @@ pub struct DeterminismArgs {
     #[arg(long, value_enum, default_value_t = Quality::Draft)]
     pub quality: Quality,
     /// How often one of the runs is killed.
-    #[arg(long, value_name = "N", default_value_t = 10)]
+    #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u32).range(0..=1000))]
     pub kills: u32,
     /// Seed of the moments.
     #[arg(long, value_name = "N", default_value_t = 1)]

@@ -2,13 +2,14 @@
 
 mod by_wish;
 mod elastic;
-mod estimate;
+pub mod estimate;
 mod nematic;
 mod report;
 
 use crate::error::XtaskError;
-use crate::figures::Quality;
+use crate::figures::{Figure, Quality};
 use crate::interrupt;
+use crate::movies::Movie;
 use crate::progress::Progress;
 use crate::provenance::Provenance;
 pub use report::Failures;
@@ -44,6 +45,10 @@ pub struct Order<'a> {
     pub knots: bool,
     /// The knots there are, the user's own among them.
     pub table: &'a KnotTable,
+    /// Figures drawn of them afterwards.
+    pub figures: &'a [Figure],
+    /// Movies made of them afterwards.
+    pub movies: &'a [Movie],
 }
 
 /// Computes the tables, reusing finished runs, and notes presets, seeds and times; gives the cases that failed.

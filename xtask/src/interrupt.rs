@@ -13,7 +13,7 @@ pub fn install() -> Interrupt {
             std::process::exit(130);
         }
         token.request();
-        eprintln!("stopping; finished cases are kept (Ctrl-C again to stop at once)");
+        note!("stopping; finished cases are kept (Ctrl-C again to stop at once)");
     });
     interrupt
 }

@@ -1,5 +1,11 @@
 //! The commands of the topo workspace: `cargo xtask --help` lists them.
 
+// these panic when nobody reads what they write: `say!` and `note!` do not
+#![deny(clippy::print_stdout, clippy::print_stderr)]
+
+#[macro_use]
+mod say;
+
 mod cli;
 mod commands;
 mod compute;
@@ -26,11 +32,10 @@ use clap::Parser;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    // A closed pipe (`| head`) is no reason to panic, and so errors of writing are dropped.
     match commands::dispatch(cli::Cli::parse()) {
         Ok(code) => code,
         Err(e) => {
-            eprintln!("error: {e}");
+            note!("error: {e}");
             ExitCode::from(e.exit_code())
         }
     }

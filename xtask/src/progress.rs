@@ -1,9 +1,14 @@
 //! Progress on the terminal: a bar with the time left, or plain lines where there is none.
 
+mod work;
+
+use crate::compute::estimate::duration;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
-use std::sync::Mutex;
+use std::sync::{Mutex, MutexGuard};
 use std::time::{Duration, Instant};
+use topo_analysis::Estimate;
+use work::Work;
 
 /// Shortest time between two plain lines.
 const PAUSE: Duration = Duration::from_secs(5);
@@ -14,25 +19,28 @@ const LONG_PAUSE: Duration = Duration::from_secs(20);
 #[derive(Debug)]
 pub struct Progress {
     label: String,
-    n: u64,
-    start: Instant,
     bar: Option<ProgressBar>,
-    plain: Mutex<Plain>,
+    state: Mutex<State>,
 }
 
 #[derive(Debug)]
-struct Plain {
-    done: u64,
+struct State {
+    work: Work,
+    start: Instant,
     said: Instant,
 }
 
 impl Progress {
-    /// Starts a stage of `n` parts.
+    /// Starts a stage of `n` parts of which nothing is known.
     pub fn start(label: &str, n: usize) -> Self {
-        let n = n as u64;
+        Self::expecting(label, n, &Estimate::default())
+    }
+
+    /// Starts a stage of `n` parts that are expected to take what the estimate says.
+    pub fn expecting(label: &str, n: usize, estimate: &Estimate) -> Self {
         let bar = std::io::stderr().is_terminal().then(|| {
-            let bar = ProgressBar::new(n);
-            let style = "{prefix:>12} [{bar:32}] {pos}/{len} {eta} left  {wide_msg}";
+            let bar = ProgressBar::new(n as u64);
+            let style = "{prefix:>12} [{bar:32}] {pos}/{len}  {wide_msg}";
             if let Ok(style) = ProgressStyle::with_template(style) {
                 bar.set_style(style.progress_chars("=> "));
             }
@@ -41,45 +49,64 @@ impl Progress {
             bar
         });
         let now = Instant::now();
-        let plain = Mutex::new(Plain { done: 0, said: now });
         Self {
             label: label.to_owned(),
-            n,
-            start: now,
             bar,
-            plain,
+            state: Mutex::new(State {
+                work: Work::new(n, estimate),
+                start: now,
+                said: now,
+            }),
+        }
+    }
+
+    // A thread that panicked while printing leaves a count that is still good.
+    fn state(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(|e| e.into_inner())
+    }
+
+    /// The parts begin only now: what came before them says nothing about the time that they take.
+    pub fn restart(&self) {
+        let mut state = self.state();
+        if state.work.n_done() == 0 {
+            state.start = Instant::now();
         }
     }
 
     /// One part is done; `what` names it.
     pub fn done(&self, what: &str) {
-        if let Some(bar) = &self.bar {
-            bar.set_message(what.to_owned());
-            bar.inc(1);
-            return;
-        }
-        // A thread that panicked while printing leaves a count that is still good.
-        let mut plain = self.plain.lock().unwrap_or_else(|e| e.into_inner());
-        plain.done += 1;
-        if plain.said.elapsed() >= PAUSE || plain.done == self.n {
-            plain.said = Instant::now();
-            eprintln!(
-                "{}",
-                line(&self.label, plain.done, self.n, self.start.elapsed(), what)
-            );
+        self.done_of(what, 0.0);
+    }
+
+    /// One part is done that was expected to take so many seconds on the estimate's reference machine.
+    pub fn done_of(&self, what: &str, expected: f64) {
+        let mut state = self.state();
+        state.work.add(expected);
+        let text = state.text(what);
+        match &self.bar {
+            Some(bar) => {
+                bar.set_message(text);
+                bar.inc(1);
+            }
+            None if state.said.elapsed() >= PAUSE || state.work.is_done() => {
+                state.said = Instant::now();
+                note!("{}: {}, {text}", self.label, state.work);
+            }
+            None => {}
         }
     }
 
     /// Where a long part is.
     pub fn working(&self, what: &str) {
-        if let Some(bar) = &self.bar {
-            bar.set_message(what.to_owned());
-            return;
-        }
-        let mut plain = self.plain.lock().unwrap_or_else(|e| e.into_inner());
-        if plain.said.elapsed() >= LONG_PAUSE {
-            plain.said = Instant::now();
-            eprintln!("{}: {what}", self.label);
+        let mut state = self.state();
+        let text = state.text(what);
+        match &self.bar {
+            Some(bar) => bar.set_message(text),
+            None if state.said.elapsed() >= LONG_PAUSE => {
+                state.said = Instant::now();
+                note!("{}: {}, {text}", self.label, state.work);
+            }
+            None => {}
         }
     }
 
@@ -87,38 +114,28 @@ impl Progress {
     pub fn note(&self, text: &str) {
         match &self.bar {
             Some(bar) => bar.println(text),
-            None => eprintln!("{text}"),
+            None => note!("{text}"),
         }
     }
 
     /// Ends the stage and returns its seconds.
     pub fn finish(self) -> f64 {
-        if let Some(bar) = self.bar {
+        let state = self.state();
+        let seconds = state.start.elapsed().as_secs_f64();
+        if let Some(bar) = &self.bar {
             bar.finish_and_clear();
-            eprintln!(
-                "{:>12} {} in {:.1} s",
-                self.label,
-                self.n,
-                self.start.elapsed().as_secs_f64()
-            );
+            note!("{:>12} {} in {seconds:.1} s", self.label, state.work.n());
         }
-        self.start.elapsed().as_secs_f64()
+        seconds
     }
 }
 
-fn line(label: &str, done: u64, n: u64, elapsed: Duration, what: &str) -> String {
-    let left = elapsed.as_secs_f64() / done.max(1) as f64 * n.saturating_sub(done) as f64;
-    format!("{label}: {done}/{n}, {left:.0} s left, {what}")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn time_left_is_in_proportion() {
-        let text = line("charge", 2, 10, Duration::from_secs(4), "7_4");
-        assert_eq!(text, "charge: 2/10, 16 s left, 7_4");
-        assert!(line("x", 10, 10, Duration::from_secs(4), "").contains("0 s left"));
+impl State {
+    /// The time left, if anything tells it, and what is done.
+    fn text(&self, what: &str) -> String {
+        match self.work.left(self.start.elapsed().as_secs_f64()) {
+            Some(left) => format!("{} left, {what}", duration(left)),
+            None => what.to_owned(),
+        }
     }
 }

@@ -36,6 +36,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             name,
             n_done,
             warnings,
+            ..
         } = event
         {
             eprintln!("{n_done}: {name} {warnings}");

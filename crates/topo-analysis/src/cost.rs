@@ -1,10 +1,14 @@
-//! What work will take: a model of the cost of a case, measured once and set to this machine by the cases it has finished.
+//! What work will take: a model of the cost of a case, measured once and set to this machine by the cases it has finished, or
+//! by a short run.
+
+mod probe;
 
 use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 
 use crate::statistics::median;
+use crate::system::System;
 
 /// What the cases still to be computed are expected to take.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
@@ -13,22 +17,35 @@ pub struct Estimate {
     pub n_cases: usize,
     /// Processor seconds of all of them.
     pub cpu_seconds: f64,
+    /// The same on the machine that the models were measured on.
+    #[serde(default)]
+    pub reference_seconds: f64,
     /// Seconds until all are done.
     pub wall_seconds: f64,
     /// Threads they run on.
     pub threads: usize,
     /// Most bytes held at a time.
     pub bytes: u64,
-    /// Finished cases whose times have set the model to this machine; 0: it is taken to be as fast as the one it was measured on.
+    /// Finished cases whose times have set the model to this machine; 0: a short run has.
     pub n_calibrated: usize,
 }
 
 impl Estimate {
+    /// What parts that take these processor seconds on the models' machine take here, one after another, all threads in each.
+    pub fn of_parts(seconds: &[f64], jobs: usize) -> Self {
+        let costs: Vec<Cost> = seconds
+            .iter()
+            .map(|&seconds| Cost { seconds, bytes: 0 })
+            .collect();
+        estimate(&costs, Speed::Probed(System::Rod), threads(jobs), false)
+    }
+
     /// Two stages, one after the other.
     pub fn then(self, next: Self) -> Self {
         Self {
             n_cases: self.n_cases + next.n_cases,
             cpu_seconds: self.cpu_seconds + next.cpu_seconds,
+            reference_seconds: self.reference_seconds + next.reference_seconds,
             wall_seconds: self.wall_seconds + next.wall_seconds,
             threads: self.threads.max(next.threads),
             bytes: self.bytes.max(next.bytes),
@@ -39,8 +56,10 @@ impl Estimate {
 
 /// Share of the threads' time that cases side by side use.
 pub(crate) const EFFICIENCY: f64 = 0.93;
+/// The same of one case with all threads in it, as measured of colloids of six million cells on two.
+const WITHIN: f64 = 0.8;
 
-/// The expected cost of one case.
+/// The expected cost of one case, on the machine that the models were measured on.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Cost {
     /// Processor seconds.
@@ -56,53 +75,114 @@ pub(crate) fn estimate(
     threads: usize,
     side_by_side: bool,
 ) -> Estimate {
-    let cpu: f64 = costs.iter().map(|c| c.seconds).sum::<f64>() * speed.factor;
-    let longest = costs.iter().map(|c| c.seconds).fold(0.0, f64::max) * speed.factor;
+    if costs.is_empty() {
+        return Estimate {
+            threads,
+            ..Estimate::default()
+        };
+    }
+    let pace = speed.pace(threads);
+    let sum: f64 = costs.iter().map(|c| c.seconds).sum();
     let largest = costs.iter().map(|c| c.bytes).max().unwrap_or(0);
-    let shared = cpu / (threads as f64 * EFFICIENCY);
-    let together = if side_by_side {
-        threads.min(costs.len())
+    let (alone, together) = if side_by_side {
+        let shared = sum / (threads as f64 * EFFICIENCY);
+        (
+            shared.max(longest(costs, threads)),
+            threads.min(costs.len()),
+        )
     } else {
-        1
+        (sum / (threads as f64 * WITHIN).max(1.0), 1)
     };
     Estimate {
         n_cases: costs.len(),
-        cpu_seconds: cpu,
-        wall_seconds: if side_by_side {
-            shared.max(longest)
-        } else {
-            shared
-        },
+        cpu_seconds: sum * pace.factor,
+        reference_seconds: sum,
+        wall_seconds: alone * pace.factor * pace.waiting,
         threads,
         bytes: largest * together as u64,
-        n_calibrated: speed.n_cases,
+        n_calibrated: pace.n_cases,
     }
 }
 
-/// How much slower than the model's machine this one is.
+/// Time of the thread with most work when each takes the largest case left: three equal cases on two threads take two of them.
+fn longest(costs: &[Cost], threads: usize) -> f64 {
+    let mut seconds: Vec<f64> = costs.iter().map(|c| c.seconds).collect();
+    seconds.sort_by(|a, b| b.total_cmp(a));
+    let mut loads: Vec<f64> = vec![0.0; threads.clamp(1, costs.len().max(1))];
+    for case in seconds {
+        if let Some(least) = loads.iter_mut().min_by(|a, b| a.total_cmp(b)) {
+            *least += case;
+        }
+    }
+    loads.into_iter().fold(0.0, f64::max)
+}
+
+/// What tells how much slower than the models' machine this one is.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Speed {
-    factor: f64,
-    n_cases: usize,
+pub(crate) enum Speed {
+    /// Cases that it has finished.
+    Finished {
+        /// Median of the processor seconds taken over those expected.
+        factor: f64,
+        /// How many.
+        n_cases: usize,
+        /// Of which system.
+        system: System,
+    },
+    /// A short run of the system, made when it is asked for.
+    Probed(System),
+    /// It is that machine, idle.
+    #[cfg(test)]
+    Reference,
+}
+
+/// How much slower a machine is than the models', and how long its threads wait.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Pace {
+    /// Processor seconds over those of the models' machine.
+    pub factor: f64,
+    /// Elapsed over processor seconds of threads that never rest: above 1 where others are at work too.
+    pub waiting: f64,
+    /// Finished cases that say so.
+    pub n_cases: usize,
 }
 
 /// Fewest finished cases that say anything about a machine.
 const FEWEST: usize = 3;
 
 impl Speed {
-    /// From the seconds that finished cases were expected to take and took.
-    pub(crate) fn of(finished: &[(f64, f64)]) -> Self {
+    /// From the seconds that finished cases of a system were expected to take and took, or else from a probe.
+    pub(crate) fn of(system: System, finished: &[(f64, f64)]) -> Self {
         let ratios = finished
             .iter()
             .filter(|(model, taken)| *model > 0.0 && *taken > 0.0)
             .map(|(model, taken)| taken / model);
         match median(ratios.clone()) {
-            Some(factor) if ratios.clone().count() >= FEWEST => Self {
+            Some(factor) if ratios.clone().count() >= FEWEST => Self::Finished {
                 factor,
                 n_cases: ratios.count(),
+                system,
             },
-            _ => Self {
+            _ => Self::Probed(system),
+        }
+    }
+
+    fn pace(self, threads: usize) -> Pace {
+        match self {
+            Self::Finished {
+                factor,
+                n_cases,
+                system,
+            } => Pace {
+                factor,
+                n_cases,
+                ..probe::pace(system, threads)
+            },
+            Self::Probed(system) => probe::pace(system, threads),
+            #[cfg(test)]
+            Self::Reference => Pace {
                 factor: 1.0,
+                waiting: 1.0,
                 n_cases: 0,
             },
         }
@@ -142,7 +222,7 @@ mod tests {
 
     #[test]
     fn cases_share_threads_and_a_long_one_is_waited_for() {
-        let plain = Speed::of(&[]);
+        let plain = Speed::Reference;
         let four = estimate(&[ONE; 4], plain, 2, true);
         assert_eq!((four.n_cases, four.cpu_seconds, four.bytes), (4, 40.0, 10));
         assert!((four.wall_seconds - 20.0 / EFFICIENCY).abs() < 1e-9);
@@ -157,13 +237,18 @@ mod tests {
         let both = four.then(alone);
         assert_eq!((both.n_cases, both.bytes), (6, 10));
         assert_eq!(estimate(&[], plain, 2, true).wall_seconds, 0.0);
+        // the third of three equal cases has a thread to itself
+        assert_eq!(estimate(&[ONE; 3], plain, 2, true).wall_seconds, 20.0);
     }
 
     #[test]
     fn finished_cases_tell_the_speed_of_the_machine() {
-        assert_eq!(Speed::of(&[(1.0, 9.0), (1.0, 9.0)]).n_cases, 0);
-        let slow = Speed::of(&[(1.0, 2.0), (2.0, 4.0), (1.0, 50.0), (0.0, 3.0)]);
-        assert_eq!((slow.factor, slow.n_cases), (2.0, 3));
-        assert_eq!(estimate(&[ONE], slow, 1, true).cpu_seconds, 20.0);
+        let probed = Speed::Probed(System::Rod);
+        assert_eq!(Speed::of(System::Rod, &[(1.0, 9.0), (1.0, 9.0)]), probed);
+        let finished = [(1.0, 2.0), (2.0, 4.0), (1.0, 50.0), (0.0, 3.0)];
+        let slow = Speed::of(System::Rod, &finished);
+        let told = estimate(&[ONE], slow, 1, true);
+        assert_eq!((told.cpu_seconds, told.n_calibrated), (20.0, 3));
+        assert!(told.wall_seconds >= told.cpu_seconds);
     }
 }

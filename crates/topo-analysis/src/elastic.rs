@@ -4,6 +4,7 @@ mod accuracy;
 mod case;
 mod check;
 mod choices;
+mod cost;
 mod file;
 mod frames;
 mod imperfection;

@@ -12,6 +12,7 @@ use crate::AnalysisError;
 use crate::cost::{Cost, Estimate, Speed, estimate, threads};
 use crate::folder::make_folder;
 use crate::progress::Event;
+use crate::system::System;
 use crate::table::{KnotRow, write_table};
 
 /// Tight shapes by name.
@@ -81,16 +82,21 @@ impl Estimate {
                 });
             }
         }
-        Ok(estimate(&costs, Speed::of(&[]), threads(jobs), true))
+        Ok(estimate(
+            &costs,
+            Speed::of(System::Knots, &[]),
+            threads(jobs),
+            true,
+        ))
     }
 }
 
 /// Growth with the number of crossings.
-const CROSSINGS_POWER: f64 = 1.3;
+const CROSSINGS_POWER: f64 = 0.85;
 /// Processor seconds of the search for a knot of six crossings, a unit being a start and four kicks.
-const SEARCH_SECONDS: f64 = 1.06;
+const SEARCH_SECONDS: f64 = 1.64;
 /// The same of tightening it at four vertices a unit of ropelength.
-const LEVEL_SECONDS: f64 = 0.18;
+const LEVEL_SECONDS: f64 = 0.17;
 /// Growth with the vertices a unit.
 const LEVEL_POWER: f64 = 2.3;
 /// Bytes that a knot holds.

@@ -2,6 +2,7 @@
 
 mod case;
 mod check;
+mod cost;
 mod field;
 mod file;
 mod frames;

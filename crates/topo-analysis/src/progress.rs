@@ -48,6 +48,8 @@ pub enum Event<'a> {
         name: &'a str,
         /// Cases finished so far, those of earlier runs included.
         n_done: usize,
+        /// Processor seconds that it was expected to take on the models' machine; 0 if nothing was.
+        expected: f64,
         /// Its warnings; empty if there are none.
         warnings: &'a str,
     },

@@ -16,6 +16,7 @@ use crate::AnalysisError;
 use crate::cost::{Cost, Estimate, Stopwatch};
 use crate::folder::{Outcome, forget_checkpoints, tell_replaced, writable};
 use crate::progress::{Event, SweepSettings, with_jobs};
+use crate::system::System;
 use crate::table::write_table;
 use plan::Plan;
 
@@ -33,6 +34,8 @@ pub(crate) trait Experiment: Sync {
 
     /// Changes whenever the same scene gives other numbers than before.
     const RESULTS: u32;
+    /// Whose speed tells how long its cases take.
+    const SYSTEM: System;
 
     /// Folder of the table below the output folder.
     fn folder(&self) -> &str;
@@ -104,6 +107,8 @@ pub(crate) struct Place<'a> {
     pub settings: &'a SweepSettings,
     /// Whether it has all threads for itself.
     pub is_alone: bool,
+    /// Processor seconds that it is expected to take on the models' machine.
+    pub expected: f64,
     /// Told where it is.
     pub progress: &'a (dyn Fn(Event<'_>) + Sync),
 }
@@ -182,19 +187,18 @@ pub(crate) fn run<E: Experiment>(
         let todo: Vec<&E::Case> = plan.todo().map(|k| &plan.cases[k]).collect();
         let start = experiment.prepare(&todo, settings, progress)?;
         let clock = Stopwatch::start();
-        let one = |&k: &usize| {
+        let one = |&(k, expected): &(usize, f64)| {
             let folder = folder.join(&plan.names[k]);
             let place = Place {
                 name: &plan.names[k],
                 folder: &folder,
                 settings,
                 is_alone: !plan.is_side_by_side,
+                expected,
                 progress,
             };
-            Ok((
-                k,
-                run_case(experiment, &plan.cases[k], &start, &place, &n_done)?,
-            ))
+            let end = run_case(experiment, &plan.cases[k], &start, &place, &n_done)?;
+            Ok((k, end))
         };
         let order = plan.order();
         let mut now: Vec<(usize, Now<E::Row>)> = if plan.is_side_by_side {
@@ -246,6 +250,7 @@ fn run_case<E: Experiment>(
         (place.progress)(Event::Case {
             name: place.name,
             n_done: n_done.fetch_add(1, Ordering::Relaxed) + 1,
+            expected: place.expected,
             warnings,
         });
     };

@@ -1,5 +1,6 @@
 //! The command line of `cargo xtask knot`.
 
+use super::count;
 use clap::{Args, Subcommand, ValueEnum};
 use std::path::PathBuf;
 use topo_knots::{CurveFormat, FrameChoice, KnotError};
@@ -74,10 +75,10 @@ pub struct TightenArgs {
     #[arg(long, value_enum, default_value_t = KnotQuality::Standard)]
     pub quality: KnotQuality,
     /// Start also from this number of inversions in spheres around random points: for knots that end in a poor minimum.
-    #[arg(long, value_name = "N", default_value_t = 0)]
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = count::from(0, MOST_STARTS))]
     pub inversions: usize,
     /// Search by this number of hops between basins from random words of the braid instead: half a second each, uphill too.
-    #[arg(long, value_name = "N", default_value_t = 0, conflicts_with_all = ["curve", "inversions"])]
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = count::from(0, MOST_STARTS), conflicts_with_all = ["curve", "inversions"])]
     pub hops: usize,
     /// Seed of the random choices of the search.
     #[arg(long, value_name = "N", default_value_t = 1)]
@@ -92,7 +93,7 @@ pub struct TightenArgs {
     #[arg(long, value_name = "FORMAT", default_value = "vect", value_parser = ["csv", "xyz", "vect"])]
     pub format: String,
     /// Number of threads; all processors when left out.
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = count::from(1, count::MOST_JOBS))]
     pub jobs: Option<usize>,
     /// Compute everything anew.
     #[arg(long)]
@@ -111,7 +112,7 @@ pub struct IdentifyArgs {
     #[arg(long)]
     pub closed: bool,
     /// Closures of an open curve.
-    #[arg(long, value_name = "N", default_value_t = 100)]
+    #[arg(long, value_name = "N", default_value_t = 100, value_parser = count::from(1, MOST_CLOSURES))]
     pub closures: usize,
     /// Which frame of a file with several: its number from 1, or `last`.
     #[arg(long, value_name = "N", value_parser = frame, help = "Which frame of a file with several: its number from 1, or `last` [default: last]")]
@@ -123,6 +124,11 @@ pub struct IdentifyArgs {
     #[arg(long)]
     pub json: bool,
 }
+
+/// Most inversions or hops of a search: half a second each.
+const MOST_STARTS: usize = 100_000;
+/// Most closures of a curve.
+const MOST_CLOSURES: usize = 100_000;
 
 fn frame(text: &str) -> Result<FrameChoice, String> {
     match text.parse() {

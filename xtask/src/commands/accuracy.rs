@@ -40,14 +40,14 @@ fn accuracy(preset: Preset, settings: &SweepSettings) -> Result<(), XtaskError> 
     interrupt::check(stop)?;
     let path = settings.out.join("accuracy.csv");
     write_table(&path, &rows)?;
-    println!(
+    say!(
         "knot    theta'h     cut     t50   error      t99   error  E/E_ref   CPU s  CPU s of reference"
     );
     for r in &rows {
         let cell = |t: Option<f64>| t.map_or_else(|| "      -".to_owned(), |t| format!("{t:7.3}"));
         let error =
             |e: Option<f64>| e.map_or_else(|| "      -".to_owned(), |e| format!("{e:+6.2}%"));
-        println!(
+        say!(
             "{:6} {:+8.2} {:7.4} {} {}  {} {} {:8.4} {:7.2} {:7.2}",
             r.knot,
             r.twist,
@@ -75,12 +75,12 @@ fn accuracy(preset: Preset, settings: &SweepSettings) -> Result<(), XtaskError> 
     ] {
         let sizes = || errors.iter().map(|e| e.abs());
         if let (Some(median), Some(most)) = (quantile(sizes(), 0.5), quantile(sizes(), 0.9)) {
-            println!(
+            say!(
                 "{name}: error of {} cases, median {median:.2} %, 90th percentile {most:.2} %",
                 errors.len()
             );
         }
     }
-    println!("written to {}", path.display());
+    say!("written to {}", path.display());
     Ok(())
 }

@@ -9,7 +9,7 @@ pub fn run(args: &BenchArgs) -> Result<(), XtaskError> {
     command.args(args.filter.as_deref());
     let mut table = Summary::default();
     let ok = step("bench", command, |line| table.read(line))?;
-    println!("\n{table}");
+    say!("\n{table}");
     if ok {
         Ok(())
     } else {

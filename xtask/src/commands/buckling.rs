@@ -48,7 +48,7 @@ pub fn run(args: &BucklingArgs) -> Result<(), XtaskError> {
             let mut kept = kept.lock().unwrap_or_else(PoisonError::into_inner);
             kept.push(row.clone());
             if let Err(error) = write_table(&path, &kept) {
-                eprintln!("{error}");
+                note!("{error}");
             }
         };
         let found = with_jobs(jobs, || buckling_study(&cases, &known, &stop, &told))??;
@@ -60,7 +60,7 @@ pub fn run(args: &BucklingArgs) -> Result<(), XtaskError> {
     }
     let text = text(&rows);
     data::write(&folder.join("buckling.md"), text.as_bytes())?;
-    println!("{text}");
+    say!("{text}");
     if args.record {
         record("nematic-model.md", &text)?;
     }

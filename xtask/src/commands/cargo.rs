@@ -2,7 +2,7 @@
 
 use crate::error::XtaskError;
 use crate::provenance::workspace;
-use std::io::{BufRead, BufReader, Write};
+use std::io::{BufRead, BufReader};
 use std::process::{Command, Stdio};
 use std::time::Instant;
 
@@ -29,19 +29,18 @@ pub fn step(
     mut line: impl FnMut(&str),
 ) -> Result<bool, XtaskError> {
     let start = Instant::now();
-    eprintln!("== {name}");
+    note!("== {name}");
     let fail = |e: std::io::Error| XtaskError::Step(format!("{name}: {e}"));
     let mut child = command.stdout(Stdio::piped()).spawn().map_err(fail)?;
     if let Some(out) = child.stdout.take() {
         for text in BufReader::new(out).lines() {
             let text = text.map_err(fail)?;
             line(&text);
-            // Whoever reads this may have gone; the step goes on.
-            let _ = writeln!(std::io::stdout(), "{text}");
+            say!("{text}");
         }
     }
     let ok = child.wait().map_err(fail)?.success();
     let word = if ok { "ok" } else { "FAILED" };
-    eprintln!("== {name}: {word}, {:.0} s", start.elapsed().as_secs_f64());
+    note!("== {name}: {word}, {:.0} s", start.elapsed().as_secs_f64());
     Ok(ok)
 }

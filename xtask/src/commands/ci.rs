@@ -46,8 +46,8 @@ pub fn run() -> Result<(), XtaskError> {
     } else {
         format!("failed: {}", failed.join(", "))
     };
-    println!("ci: {verdict}");
-    println!("{report}");
+    say!("ci: {verdict}");
+    say!("{report}");
     if failed.is_empty() {
         Ok(())
     } else {

@@ -15,13 +15,13 @@ const TOLD: usize = 20;
 pub fn run(args: &CompareArgs) -> Result<(), XtaskError> {
     let differences = differences(&args.first, &args.second, &DROPPED)?;
     for line in differences.iter().take(TOLD) {
-        println!("{line}");
+        say!("{line}");
     }
     if differences.len() > TOLD {
-        println!("and {} more", differences.len() - TOLD);
+        say!("and {} more", differences.len() - TOLD);
     }
     if differences.is_empty() {
-        println!(
+        say!(
             "the same: {} and {}, but for {}",
             args.first.display(),
             args.second.display(),

@@ -11,9 +11,12 @@ pub fn run(args: &CostArgs) -> Result<(), XtaskError> {
     let effort = effort(args.quality)?;
     let stop = interrupt::install();
     let told = |row: &TermCost| {
-        eprintln!(
+        note!(
             "{} {}, with: {}: {:.2} s",
-            row.system, row.term, row.with, row.cpu_seconds
+            row.system,
+            row.term,
+            row.with,
+            row.cpu_seconds
         );
     };
     let rows = term_costs(effort, &stop, &told)?;
@@ -25,7 +28,7 @@ pub fn run(args: &CostArgs) -> Result<(), XtaskError> {
     write_table(&folder.join("cost.csv"), &rows)?;
     let text = text(&rows);
     data::write(&folder.join("cost.md"), text.as_bytes())?;
-    println!("{text}");
+    say!("{text}");
     if stop.is_requested() {
         return Err(XtaskError::Interrupted);
     }

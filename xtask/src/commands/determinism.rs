@@ -24,12 +24,12 @@ pub fn run(args: &DeterminismArgs) -> Result<(), XtaskError> {
     let start = Instant::now();
     finish(&args.work("1", &place("one-thread")))?;
     interrupt::check(&stop)?;
-    eprintln!("one thread: {:.0} s", start.elapsed().as_secs_f64());
+    note!("one thread: {:.0} s", start.elapsed().as_secs_f64());
     let start = Instant::now();
     finish(&args.work("2", &place("two-threads")))?;
     interrupt::check(&stop)?;
     let whole = start.elapsed();
-    eprintln!("two threads: {:.0} s", whole.as_secs_f64());
+    note!("two threads: {:.0} s", whole.as_secs_f64());
     let mut moments = Moments(args.seed);
     let n_kills = torn(args, &place("killed"), whole, &mut moments)?;
     interrupt::check(&stop)?;
@@ -38,16 +38,16 @@ pub fn run(args: &DeterminismArgs) -> Result<(), XtaskError> {
     for other in ["two-threads", "killed"] {
         let differences = compare::differences(&place("one-thread"), &place(other), &dropped)?;
         let n_files = compare::files(&place("one-thread"))?.len();
-        println!(
+        say!(
             "one-thread and {other}: {n_files} files, {} differ",
             differences.len()
         );
         for line in differences.iter().take(20) {
-            println!("  {line}");
+            say!("  {line}");
         }
         n_differences += differences.len();
     }
-    println!(
+    say!(
         "killed {n_kills} times, {} s without kills",
         whole.as_secs()
     );
@@ -122,7 +122,7 @@ fn torn(
         child.kill().map_err(failed)?;
         child.wait().map_err(failed)?;
         n_kills += 1;
-        eprintln!("killed {n_kills} of {}", args.kills);
+        note!("killed {n_kills} of {}", args.kills);
     }
     finish(&words)?;
     Ok(n_kills)

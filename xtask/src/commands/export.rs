@@ -5,11 +5,11 @@ use crate::error::XtaskError;
 use crate::export::{self, Wanted};
 
 pub fn run(args: &ExportArgs) -> Result<(), XtaskError> {
-    if !(args.micrometres.is_finite() && args.micrometres > 0.0) {
+    if !(args.micrometres > 0.0 && args.micrometres <= 1e6) {
         return Err(XtaskError::Argument {
             key: "--micrometres",
             value: args.micrometres.to_string(),
-            remedy: "a positive length is needed, such as 0.00663".to_owned(),
+            remedy: "a positive length up to 1e6 is needed, such as 0.00663".to_owned(),
         });
     }
     let any = |formats: &[ExportFormat]| {
@@ -23,8 +23,8 @@ pub fn run(args: &ExportArgs) -> Result<(), XtaskError> {
     let folder = args.to.clone().unwrap_or_else(|| args.case.join("export"));
     let made = export::write(&args.case, &folder, &wanted)?;
     for note in &made.notes {
-        println!("note: {note}");
+        say!("note: {note}");
     }
-    println!("{} files written to {}", made.files.len(), folder.display());
+    say!("{} files written to {}", made.files.len(), folder.display());
     Ok(())
 }

@@ -33,10 +33,12 @@ pub fn run(args: &FiguresArgs) -> Result<(), XtaskError> {
         nematic: chosen.iter().any(|f| f.table.starts_with("nematic/")),
         knots: chosen.iter().any(|f| f.table.starts_with("knots/")),
         table: &table,
+        figures: &chosen,
+        movies: &movies,
     };
     let failures = compute::tables(&order, &interrupt, &mut record)?;
     if let Some(shard) = args.shard {
-        println!(
+        say!(
             "part {shard} is computed; put the case folders of all parts below one folder and run \
              the command without --shard to draw"
         );
@@ -51,7 +53,7 @@ pub fn run(args: &FiguresArgs) -> Result<(), XtaskError> {
     };
     let progress = Progress::start("drawing", chosen.len());
     let mut done: Vec<Done> = Vec::new();
-    for figure in chosen {
+    for &figure in &chosen {
         interrupt::check(&interrupt)?;
         done.push(figures::draw(figure, &context)?);
         progress.done(figure.name);
@@ -59,7 +61,7 @@ pub fn run(args: &FiguresArgs) -> Result<(), XtaskError> {
     progress.finish();
     let n_drawn = done.len();
     let mut shown_movies: Vec<(Movie, String)> = Vec::new();
-    for movie in movies {
+    for &movie in &movies {
         let progress = Progress::start(movie.name, movies::N_FRAMES);
         let start = Instant::now();
         let stage = movies::Stage {
@@ -70,7 +72,7 @@ pub fn run(args: &FiguresArgs) -> Result<(), XtaskError> {
         };
         let finding = movies::draw(movie, &stage)?;
         progress.finish();
-        println!("{}: {finding}", movie.name);
+        say!("{}: {finding}", movie.name);
         record
             .wall_seconds
             .insert(movie.name.to_owned(), start.elapsed().as_secs_f64());
@@ -125,8 +127,8 @@ pub fn run(args: &FiguresArgs) -> Result<(), XtaskError> {
     };
     gallery::write(results, &page)?;
     for d in &done[..n_drawn] {
-        println!("{}: {}", d.figure.name, d.finding);
+        say!("{}: {}", d.figure.name, d.finding);
     }
-    println!("gallery: {}", results.join("index.html").display());
+    say!("gallery: {}", results.join("index.html").display());
     failures.into_result()
 }

@@ -63,7 +63,7 @@ pub fn run(args: &FuzzArgs) -> Result<(), XtaskError> {
     }
     write_table(&results.join("fuzz.csv"), &rows)?;
     data::write(&results.join("fuzz.md"), text(&rows).as_bytes())?;
-    println!("{}", text(&rows));
+    say!("{}", text(&rows));
     if args.record {
         record("fuzzing.md", &text(&rows))?;
     }
@@ -143,7 +143,7 @@ fn built() -> PathBuf {
 
 /// Runs a target and keeps what it prints.
 fn fuzz(folder: &Path, name: &str, minutes: f64, results: &Path) -> Result<(), XtaskError> {
-    eprintln!("== {name}");
+    note!("== {name}");
     let fail = |e: std::io::Error| XtaskError::Step(format!("fuzz {name}: {e}"));
     let (corpus, artifacts) = (
         folder.join("corpus").join(name),
@@ -166,7 +166,7 @@ fn fuzz(folder: &Path, name: &str, minutes: f64, results: &Path) -> Result<(), X
         for line in BufReader::new(output).split(b'\n') {
             let line = line.map_err(fail)?;
             if !line.starts_with(b"#") {
-                eprintln!("{}", String::from_utf8_lossy(&line));
+                note!("{}", String::from_utf8_lossy(&line));
             }
             log.extend_from_slice(&line);
             log.push(b'\n');

@@ -60,12 +60,12 @@ pub fn run(args: &SystemsArgs) -> Result<(), XtaskError> {
             )?;
         }
         let wall = format!("{:.0} s", start.elapsed().as_secs_f64());
-        println!("{}", stability::summary(system.name(), &rows, &wall));
+        say!("{}", stability::summary(system.name(), &rows, &wall));
         maps.push((system.name(), rows));
     }
     let report = stability::report(args.quality, &maps);
     data::write(&folder.join("stability.md"), report.as_bytes())?;
-    println!("report: {}", folder.join("stability.md").display());
+    say!("report: {}", folder.join("stability.md").display());
     // Rows carry where runs must converge.
     let broken: usize = maps.iter().map(|(_, rows)| stability::n_broken(rows)).sum();
     if broken > 0 {

@@ -78,7 +78,7 @@ impl std::fmt::Display for Report {
 
 pub fn run(args: &TestArgs) -> Result<(), XtaskError> {
     let report = all(args.long)?;
-    println!("{report}");
+    say!("{report}");
     if report.ok {
         Ok(())
     } else {
@@ -140,7 +140,7 @@ impl Report {
         let went = step(what, command, |line| extra.add(line))?;
         let n = extra.passed + extra.failed;
         if went && n == 0 {
-            eprintln!("== {what}: FAILED, no test is named {prefix}");
+            note!("== {what}: FAILED, no test is named {prefix}");
         }
         self.ok &= went && n > 0;
         self.counts.passed += extra.passed;

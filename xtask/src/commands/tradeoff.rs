@@ -75,7 +75,7 @@ fn measure_all(args: &TradeoffArgs, folder: &Path) -> Result<(), XtaskError> {
         if *record {
             sets::record_table(system, &rows)?;
         }
-        println!(
+        say!(
             "{}: {} rows in {:.0} s",
             system.name(),
             rows.len(),
@@ -86,7 +86,7 @@ fn measure_all(args: &TradeoffArgs, folder: &Path) -> Result<(), XtaskError> {
     let report = crate::tradeoff::report(args.quality, &tables);
     let path = folder.join("tradeoff.md");
     data::write(&path, report.as_bytes())?;
-    println!("report: {}", path.display());
+    say!("report: {}", path.display());
     Ok(())
 }
 

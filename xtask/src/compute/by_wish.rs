@@ -10,9 +10,9 @@ use topo_analysis::{ErrorRow, Grant, Wish, median, quantile, write_table};
 pub fn tell_grant(grant: &Grant, unit: &str) {
     let p = &grant.point;
     if let Some(reason) = &grant.stale {
-        eprintln!("warning: {reason}");
+        note!("warning: {reason}");
     }
-    eprintln!(
+    note!(
         "{}: {} {unit}, tolerance {:e}; measured on {} cases: off by {:.2} % (median), {:.2} % (90th percentile); {} of one processor",
         grant.wish,
         p.resolution,
@@ -28,7 +28,7 @@ pub fn tell_grant(grant: &Grant, unit: &str) {
 pub fn tell_errors(grant: &Grant, rows: &[ErrorRow], folder: &Path) -> Result<(), XtaskError> {
     let path = folder.join("errors.csv");
     write_table(&path, rows)?;
-    println!("estimated errors:");
+    say!("estimated errors:");
     for r in rows {
         let time = r
             .result
@@ -39,11 +39,11 @@ pub fn tell_errors(grant: &Grant, rows: &[ErrorRow], folder: &Path) -> Result<()
         let cut = r
             .cut
             .map_or_else(String::new, |c| format!(", cut at {c:.4}"));
-        println!("  {}{cut}: {} = {time}{error}", r.case, r.quantity);
+        say!("  {}{cut}: {} = {time}{error}", r.case, r.quantity);
     }
     let errors = || rows.iter().filter_map(|r| r.relative_error);
     if let (Some(middle), Some(high)) = (median(errors()), quantile(errors(), 0.9)) {
-        println!(
+        say!(
             "estimates: median {:.2} %, 90th percentile {:.2} %; {}",
             100.0 * middle,
             100.0 * high,
@@ -53,7 +53,7 @@ pub fn tell_errors(grant: &Grant, rows: &[ErrorRow], folder: &Path) -> Result<()
     if let Wish::Accuracy(asked) = grant.wish {
         let n = errors().filter(|e| *e > asked).count();
         if n > 0 {
-            println!(
+            say!(
                 "{n} of {} may be off by more than the {:.2} % asked for: ask for less, or look at these one by one",
                 rows.len(),
                 100.0 * asked

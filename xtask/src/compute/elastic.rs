@@ -1,7 +1,7 @@
 //! Elastic sweeps: run with progress, printed as a table.
 
-use super::by_wish;
-use super::report::{Failures, Reporter, tell_estimate, tell_taken};
+use super::report::{Failures, Reporter, tell_taken};
+use super::{by_wish, estimate};
 use crate::error::XtaskError;
 use topo_analysis::{Cuts, ElasticReport, ElasticScene, SweepSettings, errors_of_rods, run_sweep};
 use topo_knots::KnotTable;
@@ -24,15 +24,15 @@ pub fn scene(
     if let Some(grant) = &grant {
         by_wish::tell_grant(grant, "edges");
     }
-    tell_estimate(&topo_analysis::estimate_sweep(&scene, table, settings)?);
+    estimate::tell(&estimate::of_elastic(&scene, table, settings)?);
     let folder = scene.results(&settings.out);
     let report = sweep(&scene, table, settings)?;
     let mut failures = Failures::default();
     failures.add(&report.failed, &folder);
-    println!("knot    theta'h     cut    E/E0      Wr     t50     t90     t95     t99  untied");
+    say!("knot    theta'h     cut    E/E0      Wr     t50     t90     t95     t99  untied");
     let cell = |t: Option<f64>| t.map_or_else(|| format!("{:>7}", "-"), |t| format!("{t:7.3}"));
     for r in &report.rows {
-        println!(
+        say!(
             "{:6} {:+8.3} {:7.4} {:7.4} {:+7.3} {} {} {} {} {}",
             r.knot,
             r.twist,
@@ -46,7 +46,7 @@ pub fn scene(
             cell(r.t_untie)
         );
         for warning in r.warnings.split(';').filter(|w| !w.is_empty()) {
-            println!("       warning: {warning}");
+            say!("       warning: {warning}");
         }
     }
     tell_taken(&report.estimate, report.wall_seconds);
@@ -57,7 +57,7 @@ pub fn scene(
         by_wish::tell_errors(grant, &rows, &folder)?;
         failures.add(&coarser.failed, &check.results(&settings.out));
     }
-    println!("written to {}", folder.display());
+    say!("written to {}", folder.display());
     failures.into_result()
 }
 

@@ -2,18 +2,47 @@
 
 use super::{Order, preset};
 use crate::error::XtaskError;
-use std::collections::BTreeMap;
+use crate::figures::Quality;
+use indicatif::{DecimalBytes, HumanDuration};
+use std::time::Duration;
 use topo_analysis::{
     ElasticScene, Estimate, NematicScene, SweepSettings, estimate_nematic_sweep, estimate_sweep,
 };
-use topo_knots::TightenSettings;
+use topo_knots::{KnotTable, TightenSettings};
 
-/// What the tables of an order are expected to take, by stage; the drawing is not counted.
-pub fn of_order(
-    order: &Order,
+/// Stages of a command with what each is expected to take, as they follow each other; those with nothing to do are left out.
+pub type Stages = Vec<(&'static str, Estimate)>;
+
+const SHAPES: &str = "tight shapes";
+const FIGURES: &str = "drawing";
+const MOVIES: &str = "movies";
+
+/// The stages of a scene of rods: tight shapes, cases.
+pub fn of_elastic(
+    scene: &ElasticScene,
+    table: &KnotTable,
     settings: &SweepSettings,
-) -> Result<BTreeMap<&'static str, Estimate>, XtaskError> {
-    let mut stages = BTreeMap::new();
+) -> Result<Stages, XtaskError> {
+    let cases = estimate_sweep(scene, table, settings)?;
+    if cases.n_cases == 0 {
+        return Ok(Stages::new());
+    }
+    let names = super::knots_of(scene, table)?;
+    let shapes = Estimate::of_shapes(&names, table, &scene.tighten, &settings.out, settings.jobs)?;
+    Ok(worked([(SHAPES, shapes), ("cases", cases)]))
+}
+
+/// The stages of a scene of colloids: cases.
+pub fn of_nematic(scene: &NematicScene, settings: &SweepSettings) -> Result<Stages, XtaskError> {
+    Ok(worked([(
+        "cases",
+        estimate_nematic_sweep(scene, settings)?,
+    )]))
+}
+
+/// What the tables of an order are expected to take, and the drawing.
+pub fn of_order(order: &Order, settings: &SweepSettings) -> Result<Stages, XtaskError> {
+    let mut stages = Stages::new();
     let table = order.table;
     let scene = ElasticScene::published(preset(order.quality));
     if (order.elastic || order.knots) && !order.as_is {
@@ -26,74 +55,126 @@ pub fn of_order(
             let more = super::more_knots(order.quality, &names, table);
             all = all.then(shapes(&more, &TightenSettings::standard())?);
         }
-        stages.insert("tight shapes", all);
+        stages.push((SHAPES, all));
     }
     if order.elastic {
-        stages.insert("elastic", estimate_sweep(&scene, table, settings)?);
+        stages.push(("elastic", estimate_sweep(&scene, table, settings)?));
         let mut variants = Estimate::default();
         for variant in scene.variants() {
             variants = variants.then(estimate_sweep(&variant.scene, table, settings)?);
         }
-        stages.insert("variants", variants);
+        stages.push(("variants", variants));
     }
     if order.nematic {
         let scene = NematicScene::published(preset(order.quality));
-        stages.insert("nematic", estimate_nematic_sweep(&scene, settings)?);
+        stages.push(("nematic", estimate_nematic_sweep(&scene, settings)?));
     }
-    stages.retain(|_, e| e.n_cases > 0);
-    Ok(stages)
+    if order.shard.is_none() {
+        stages.extend(of_drawing(order));
+    }
+    Ok(worked(stages))
 }
 
-/// Tells the estimate of an order on the terminal.
-pub fn tell(stages: &BTreeMap<&'static str, Estimate>) {
-    for (name, estimate) in stages {
-        eprintln!("estimate, {name}: {}", text(estimate));
-    }
-    if stages.len() > 1 {
-        let all = stages
-            .values()
-            .fold(Estimate::default(), |sum, e| sum.then(*e));
-        eprintln!("estimate, together: {}", text(&all));
-    }
-}
-
-/// An estimate in words.
-pub fn text(e: &Estimate) -> String {
-    let basis = if e.n_calibrated > 0 {
-        format!(
-            "; speed of this machine from {} finished cases",
-            e.n_calibrated
-        )
-    } else {
-        String::new()
+fn of_drawing(order: &Order) -> Stages {
+    let parts = |names: Vec<&str>| {
+        let of = |name: &&str| drawing_seconds(name) * drawing_factor(order.quality);
+        Estimate::of_parts(&names.iter().map(of).collect::<Vec<_>>(), order.jobs)
     };
-    format!(
-        "{} cases, {} on {} threads ({} of one processor), up to {}{basis}",
+    vec![
+        (
+            FIGURES,
+            parts(order.figures.iter().map(|f| f.name).collect()),
+        ),
+        (MOVIES, parts(order.movies.iter().map(|m| m.name).collect())),
+    ]
+}
+
+fn worked(stages: impl IntoIterator<Item = (&'static str, Estimate)>) -> Stages {
+    let stages = stages.into_iter();
+    stages.filter(|(_, e)| e.n_cases > 0).collect()
+}
+
+/// Processor seconds of figures and movies at draft quality on the models' machine.
+const DRAWING: [(&str, f64); 8] = [
+    ("elastic-configurations", 22.0),
+    ("elastic-charging", 3.0),
+    ("elastic-discharge", 4.2),
+    ("nematic-charging", 5.0),
+    ("nematic-discharge", 1.0),
+    ("knots-table", 5.6),
+    ("movie-elastic", 51.0),
+    ("movie-nematic", 82.0),
+];
+/// The same of one that was not measured.
+const OTHER_DRAWING: f64 = 5.0;
+
+fn drawing_seconds(name: &str) -> f64 {
+    let known = DRAWING.iter().find(|(known, _)| *known == name);
+    known.map_or(OTHER_DRAWING, |(_, seconds)| *seconds)
+}
+
+/// What drawing a finer sweep costs over drawing the draft: more edges, more cells, more cuts.
+fn drawing_factor(quality: Quality) -> f64 {
+    match quality {
+        Quality::Draft => 1.0,
+        Quality::Standard => 1.4,
+        Quality::Paper => 2.0,
+    }
+}
+
+/// Tells the estimate of a command on the terminal.
+pub fn tell(stages: &Stages) {
+    if let [(_, only)] = stages[..] {
+        note!("estimate: {}", text("cases", &only));
+        return;
+    }
+    for (name, estimate) in stages {
+        note!("estimate, {name}: {}", text(name, estimate));
+    }
+    if let Some(all) = together(stages) {
+        note!("estimate, together: {}", duration(all.wall_seconds));
+    }
+}
+
+/// All stages, one after the other; `None` where there is nothing to do.
+pub fn together(stages: &Stages) -> Option<Estimate> {
+    stages.iter().map(|(_, e)| *e).reduce(Estimate::then)
+}
+
+/// The estimate of a stage in words.
+fn text(stage: &str, e: &Estimate) -> String {
+    let part = match stage {
+        SHAPES => "knot",
+        FIGURES => "figure",
+        MOVIES => "movie",
+        _ => "case",
+    };
+    let plural = if e.n_cases == 1 { "" } else { "s" };
+    let mut text = format!(
+        "{} {part}{plural}, {} on {} threads ({} of one processor)",
         e.n_cases,
         duration(e.wall_seconds),
         e.threads,
         duration(e.cpu_seconds),
-        size(e.bytes)
-    )
+    );
+    if e.bytes > 0 {
+        text += &format!(", up to {}", DecimalBytes(e.bytes));
+    }
+    if e.n_calibrated > 0 {
+        text += &format!(
+            "; speed of this machine from {} finished cases",
+            e.n_calibrated
+        );
+    }
+    text
 }
 
 /// Seconds as a reader says them.
 pub fn duration(seconds: f64) -> String {
-    if seconds < 90.0 {
-        format!("{seconds:.0} s")
-    } else if seconds < 5400.0 {
-        format!("{:.0} min", seconds / 60.0)
-    } else {
-        format!("{:.1} h", seconds / 3600.0)
-    }
-}
-
-fn size(bytes: u64) -> String {
-    let mega = bytes as f64 / 1e6;
-    if mega < 1000.0 {
-        format!("{mega:.0} MB")
-    } else {
-        format!("{:.1} GB", mega / 1000.0)
+    let time = Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX);
+    match time.as_millis() {
+        0..500 => "less than a second".to_owned(),
+        _ => HumanDuration(time).to_string(),
     }
 }
 
@@ -109,16 +190,61 @@ mod tests {
             wall_seconds: 109.0,
             threads: 2,
             bytes: 120_000_000,
-            n_calibrated: 0,
+            ..Estimate::default()
         };
         assert_eq!(
-            text(&e),
-            "238 cases, 2 min on 2 threads (3 min of one processor), up to 120 MB"
+            text("elastic", &e),
+            "238 cases, 2 minutes on 2 threads (3 minutes of one processor), up to 120.00 MB"
         );
         e.n_calibrated = 7;
         e.wall_seconds = 20_000.0;
         e.bytes = 2_300_000_000;
-        let told = text(&e);
-        assert!(told.contains("5.6 h") && told.contains("2.3 GB") && told.contains("7 finished"));
+        let told = text(SHAPES, &e);
+        assert!(told.starts_with("238 knots, 6 hours") && told.contains("2.30 GB"));
+        assert!(told.contains("7 finished"));
+        for (seconds, words) in [
+            (0.2, "less than a second"),
+            (12.4, "12 seconds"),
+            (f64::INFINITY, "years"),
+        ] {
+            assert!(duration(seconds).contains(words), "{}", duration(seconds));
+        }
+    }
+
+    #[test]
+    fn every_figure_and_movie_has_its_cost() {
+        let figures = crate::figures::ALL.iter().map(|f| f.name);
+        let movies = crate::movies::ALL.iter().map(|m| m.name);
+        let mut drawn: Vec<&str> = figures.chain(movies).collect();
+        let mut known: Vec<&str> = DRAWING.iter().map(|(name, _)| *name).collect();
+        drawn.sort_unstable();
+        known.sort_unstable();
+        assert_eq!(drawn, known);
+    }
+
+    #[test]
+    fn a_scene_is_told_with_its_tight_shapes() {
+        let folder = tempfile::tempdir().unwrap();
+        let settings = SweepSettings {
+            jobs: 1,
+            ..SweepSettings::new(folder.path())
+        };
+        let mut scene = ElasticScene::published(topo_analysis::Preset::Draft);
+        (scene.knots, scene.twists) = (vec!["3_1".to_owned()], vec![0.0, 1.0]);
+        let stages = of_elastic(&scene, &KnotTable::builtin(), &settings).unwrap();
+        let names: Vec<_> = stages.iter().map(|(name, e)| (*name, e.n_cases)).collect();
+        assert_eq!(names, [(SHAPES, 1), ("cases", 2)]);
+        let all = together(&stages).unwrap();
+        assert!(all.reference_seconds > stages[1].1.reference_seconds + 1.0);
+        // a shape that is kept, or not needed, costs nothing
+        let settings = SweepSettings {
+            only_finished: true,
+            ..settings
+        };
+        assert!(
+            of_elastic(&scene, &KnotTable::builtin(), &settings)
+                .unwrap()
+                .is_empty()
+        );
     }
 }

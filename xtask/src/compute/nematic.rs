@@ -1,11 +1,11 @@
 //! Nematic sweeps: run with progress, told as a table.
 
-use super::by_wish;
-use super::report::{Failures, Reporter, tell_estimate, tell_taken};
+use super::report::{Failures, Reporter, tell_taken};
+use super::{by_wish, estimate};
 use crate::error::XtaskError;
 use topo_analysis::{
-    NematicReport, NematicScene, SweepSettings, errors_of_colloids, estimate_nematic_sweep,
-    nematic_resonance, run_nematic_sweep,
+    NematicReport, NematicScene, SweepSettings, errors_of_colloids, nematic_resonance,
+    run_nematic_sweep,
 };
 
 /// Runs a user's scene and prints its table.
@@ -15,17 +15,17 @@ pub fn scene(scene: &NematicScene, settings: &SweepSettings) -> Result<(), Xtask
     if let Some(grant) = &grant {
         by_wish::tell_grant(grant, "ξ_N a cell");
     }
-    tell_estimate(&estimate_nematic_sweep(scene, settings)?);
+    estimate::tell(&estimate::of_nematic(scene, settings)?);
     let folder = scene.results(&settings.out);
     let report = sweep(scene, settings)?;
     let mut failures = Failures::default();
     failures.add(&report.failed, &folder);
-    println!(
+    say!(
         "  q flow  F charged  F after  order  ring/R mode     t50     t90     t99   t99.9  CPU s   MB"
     );
     for r in &report.rows {
         let time = |t: Option<f64>| t.map_or_else(|| format!("{:>7}", "-"), |t| format!("{t:7.2}"));
-        println!(
+        say!(
             "{:3} {:>4} {:10.2} {:8.2} {:6.4} {:7} {:>4} {} {} {} {} {:6.1} {:4.0}",
             r.q,
             r.flow,
@@ -44,7 +44,7 @@ pub fn scene(scene: &NematicScene, settings: &SweepSettings) -> Result<(), Xtask
             r.peak_bytes as f64 / 1e6
         );
         for warning in r.warnings.split(';').filter(|w| !w.is_empty()) {
-            println!("       warning: {warning}");
+            say!("       warning: {warning}");
         }
     }
     for flow in ["off", "on"] {
@@ -56,7 +56,7 @@ pub fn scene(scene: &NematicScene, settings: &SweepSettings) -> Result<(), Xtask
             .collect();
         if rows.len() > 2 {
             let found = nematic_resonance(&rows);
-            println!(
+            say!(
                 "flow {flow}: q_c = {}, 50 % rate {}, 99.9 % rate largest at q = {}",
                 found.q_c.map_or("none".to_owned(), |q| q.to_string()),
                 if found.half_rate_is_monotonic {
@@ -78,7 +78,7 @@ pub fn scene(scene: &NematicScene, settings: &SweepSettings) -> Result<(), Xtask
         let rows = errors_of_colloids(grant, &report.rows, &coarser.rows);
         by_wish::tell_errors(grant, &rows, &folder)?;
     }
-    println!("written to {}", folder.display());
+    say!("written to {}", folder.display());
     failures.into_result()
 }
 

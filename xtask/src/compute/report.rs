@@ -1,23 +1,16 @@
 //! What a sweep says on the terminal while it runs and when it is done.
 
-use super::estimate::{duration, text};
+use super::estimate::duration;
 use crate::error::XtaskError;
 use crate::progress::Progress;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 use topo_analysis::{Estimate, Event, FailedCase};
 
-/// Tells on the terminal what the cases left will take.
-pub fn tell_estimate(estimate: &Estimate) {
-    if estimate.n_cases > 0 {
-        eprintln!("estimate: {}", text(estimate));
-    }
-}
-
 /// Tells what they took.
 pub fn tell_taken(estimate: &Estimate, seconds: f64) {
     if estimate.n_cases > 0 {
-        println!(
+        say!(
             "{} cases in {}; estimated {}",
             estimate.n_cases,
             duration(seconds),
@@ -45,15 +38,17 @@ impl Reporter {
         match (event, progress) {
             (
                 Event::Begin {
-                    n_cases, n_reused, ..
+                    n_cases,
+                    n_reused,
+                    estimate,
                 },
                 _,
             ) => {
                 if n_reused > 0 {
-                    eprintln!("{n_reused} of {n_cases} cases are finished already");
+                    note!("{n_reused} of {n_cases} cases are finished already");
                 }
                 self.progress
-                    .get_or_init(|| Progress::start(self.label, n_cases - n_reused));
+                    .get_or_init(|| Progress::expecting(self.label, n_cases - n_reused, estimate));
             }
             (Event::Replaced { names, reason }, _) => {
                 let shown = names.iter().take(3).cloned().collect::<Vec<_>>().join(", ");
@@ -64,14 +59,23 @@ impl Reporter {
                 );
                 match progress {
                     Some(progress) => progress.note(&text),
-                    None => eprintln!("{text}"),
+                    None => note!("{text}"),
                 }
             }
             (Event::Working { name, what }, Some(progress)) => {
                 progress.working(&format!("{name}: {what}"));
             }
-            (Event::Case { name, warnings, .. }, Some(progress)) => {
-                progress.done(name);
+            (Event::Knot { .. }, Some(progress)) => progress.restart(),
+            (
+                Event::Case {
+                    name,
+                    expected,
+                    warnings,
+                    ..
+                },
+                Some(progress),
+            ) => {
+                progress.done_of(name, expected);
                 if !warnings.is_empty() {
                     progress.note(&format!("warning: {name}: {warnings}"));
                 }
@@ -105,7 +109,7 @@ impl Failures {
     /// Adds those of a sweep whose table is in `folder`, and says which they are.
     pub fn add(&mut self, failed: &[FailedCase], folder: &Path) {
         for FailedCase { case, reason } in failed {
-            eprintln!("failed: {case}: {reason}");
+            note!("failed: {case}: {reason}");
         }
         if self.n == 0 {
             self.path = folder.join("failed.csv");

@@ -210,6 +210,7 @@ pub fn measure_accuracy(
             progress(Event::Case {
                 name: &format!("{name} {twist:+.2}"),
                 n_done,
+                expected: 0.0,
                 warnings: "",
             });
             let error =

@@ -58,7 +58,7 @@ pub(super) fn settings_of(scene: &ElasticScene, case: &ElasticCase) -> serde_jso
 }
 
 /// Whether a twisted rod may start from the tight curve or from its mirror image, being the same knot.
-fn starts_from_two_images(case: &ElasticCase, entry: &KnotEntry) -> bool {
+pub(super) fn starts_from_two_images(case: &ElasticCase, entry: &KnotEntry) -> bool {
     entry.chirality == Chirality::Amphichiral && case.rod.twist.is_some_and(|twist| twist != 0.0)
 }
 

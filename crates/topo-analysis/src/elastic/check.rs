@@ -5,9 +5,9 @@ use std::collections::HashSet;
 use topo_knots::KnotTable;
 use topo_rod::{IntegratorKind, Reading, RodError};
 
+use super::cost::BYTES;
 use super::keys::{EDGES, ROD_KEYS};
 use super::scene::{ElasticCase, ElasticScene};
-use super::sweep::BYTES;
 use crate::AnalysisError;
 use crate::scene::{AxisValue, Document, check_count, product};
 

@@ -8,9 +8,9 @@ use topo_knots::{KnotTable, TightenSettings};
 use topo_rod::{Accuracy, ChargeSettings, DischargeSettings, RodParameters};
 
 use super::choices::{Cuts, Numbers, Preset};
+use super::cost::weight;
 use super::file::defaults;
 use super::keys::{EDGES, ROD_KEYS};
-use super::sweep::weight;
 use crate::AnalysisError;
 use crate::scene::{Axis, product};
 use crate::table::SweepRow;

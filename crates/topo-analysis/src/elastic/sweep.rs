@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use topo_knots::{KnotTable, TightKnot};
 
 use super::case::{self, CaseJob, RESULTS_VERSION, fingerprint};
-use super::choices::Cuts;
+use super::cost::cost_of;
 use super::scene::{ElasticCase, ElasticScene};
 use crate::AnalysisError;
 use crate::cost::{Cost, Estimate};
@@ -14,6 +14,7 @@ use crate::folder::Outcome;
 use crate::knots::tight_shapes;
 use crate::progress::{Event, SweepSettings};
 use crate::sweep::{self, Experiment, Place, SweepReport};
+use crate::system::System;
 use crate::table::SweepRow;
 
 /// What an elastic sweep leaves behind.
@@ -32,6 +33,7 @@ impl Experiment for Rods<'_> {
     type Start = BTreeMap<String, Result<TightKnot, String>>;
 
     const RESULTS: u32 = RESULTS_VERSION;
+    const SYSTEM: System = System::Rod;
 
     fn folder(&self) -> &str {
         &self.scene.folder
@@ -58,8 +60,9 @@ impl Experiment for Rods<'_> {
         self.scene.blank_row(case)
     }
 
-    fn cost(&self, _case: &ElasticCase, n_rows: Option<usize>) -> Result<Cost, AnalysisError> {
-        Ok(case_cost(self.scene, n_rows))
+    fn cost(&self, case: &ElasticCase, n_rows: Option<usize>) -> Result<Cost, AnalysisError> {
+        let entry = self.table.get(&case.knot)?;
+        Ok(cost_of(self.scene, case, &entry, n_rows))
     }
 
     fn prepare(
@@ -149,46 +152,6 @@ pub fn estimate_sweep(
 ) -> Result<Estimate, AnalysisError> {
     sweep::estimate(&Rods { scene, table }, settings)
 }
-
-/// Cost of a charge with its discharges, as measured over the published knots and twists.
-fn case_cost(scene: &ElasticScene, n_cuts: Option<usize>) -> Cost {
-    let edges = scene.rod.n_edges as f64 / 200.0;
-    let tolerance = (1e-3 / scene.accuracy.tolerance.max(1e-9)).max(1e-3);
-    let n_cuts = match (n_cuts, &scene.cuts) {
-        (Some(n), _) => n as f64,
-        (None, Cuts::Argmax) => 1.0,
-        (None, Cuts::NearTies) => MEAN_NEAR_TIES,
-        (None, Cuts::All(k)) => *k as f64,
-        (None, Cuts::At(places)) => places.len() as f64,
-    };
-    let one = edges.powf(EDGES_POWER) * tolerance.powf(TOLERANCE_POWER);
-    Cost {
-        seconds: one * (CHARGE_SECONDS + n_cuts * DISCHARGE_SECONDS),
-        bytes: (BYTES * edges) as u64,
-    }
-}
-
-/// Cost of a case of a scene, over that of a charge with one discharge.
-pub(super) fn weight(scene: &ElasticScene) -> f64 {
-    let once = ElasticScene {
-        cuts: Cuts::Argmax,
-        ..scene.clone()
-    };
-    case_cost(scene, None).seconds / case_cost(&once, None).seconds
-}
-
-/// Processor seconds of a charge at N = 200 and tolerance 1e-3 h.
-const CHARGE_SECONDS: f64 = 0.12;
-/// The same of a discharge.
-const DISCHARGE_SECONDS: f64 = 0.49;
-/// Growth with the number of edges.
-const EDGES_POWER: f64 = 1.65;
-/// Growth with the inverse of the tolerance.
-const TOLERANCE_POWER: f64 = 0.25;
-/// Near-tied cuts of a case, on average over the published sweep.
-const MEAN_NEAR_TIES: f64 = 4.5;
-/// Bytes that a case holds at N = 200.
-pub(super) const BYTES: f64 = 6e7;
 
 #[cfg(test)]
 mod tests {

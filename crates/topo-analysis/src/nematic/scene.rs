@@ -8,8 +8,8 @@ use topo_nematic::{
     SurfacePattern, SwitchSettings,
 };
 
+use super::cost::weight;
 use super::keys::{COLLOID_KEYS, SPACING};
-use super::sweep::weight;
 use crate::AnalysisError;
 use crate::elastic::Preset;
 use crate::scene::{Axis, product};

@@ -2,9 +2,10 @@
 
 use std::path::Path;
 
-use topo_nematic::{FlowCoupling, NematicBattery, NematicParameters, Threads};
+use topo_nematic::{NematicBattery, Threads};
 
 use super::case::{CaseRun, RESULTS_VERSION, fingerprint};
+use super::cost::case_cost;
 use super::field;
 use super::scene::{NematicCase, NematicScene};
 use super::table::NematicRow;
@@ -13,7 +14,7 @@ use crate::cost::{Cost, Estimate};
 use crate::folder::Outcome;
 use crate::progress::{Event, SweepSettings};
 use crate::sweep::{self, Experiment, Place, SweepReport};
-use crate::tradeoff::MEASURED;
+use crate::system::System;
 
 /// What a nematic sweep leaves behind.
 pub type NematicReport = SweepReport<NematicRow>;
@@ -24,6 +25,7 @@ impl Experiment for NematicScene {
     type Start = ();
 
     const RESULTS: u32 = RESULTS_VERSION;
+    const SYSTEM: System = System::Nematic;
 
     fn folder(&self) -> &str {
         &self.folder
@@ -124,55 +126,6 @@ pub fn estimate_nematic_sweep(
 ) -> Result<Estimate, AnalysisError> {
     sweep::estimate(scene, settings)
 }
-
-/// Cost of a charge with its discharge, as measured for q = 1 to 12 at radii 15, 25 and 52.5.
-fn case_cost(case: &NematicCase, battery: &NematicBattery) -> Cost {
-    let cells = battery.grid().n_cells() as f64 / 1e6;
-    // Strong charges buckle, and buckled discharges take more steps, each of which a flow makes dear.
-    let q = f64::from(case.q.min(20));
-    let (seconds, flow_bytes) = match &case.flow {
-        None => (STILL_SECONDS * (0.7 + 0.05 * q), 0),
-        Some(flow) => (
-            FLOWING_SECONDS * (0.6 + 0.08 * q),
-            FlowCoupling::n_bytes_estimate(battery.grid(), battery.particle().is_some(), flow),
-        ),
-    };
-    Cost {
-        seconds: seconds * cells.powf(CELLS_POWER),
-        bytes: battery.memory().total() + flow_bytes,
-    }
-}
-
-/// Cost of all cases of a scene, in units of the middle one that accuracy was measured on, whatever the spacing.
-pub(super) fn weight(scene: &NematicScene) -> Result<f64, AnalysisError> {
-    let measured = NematicCase {
-        q: MEASURED.q.unsigned_abs(),
-        nematic: NematicParameters {
-            radius: MEASURED.radius,
-            spacing: scene.nematic.spacing,
-            cell: MEASURED.cell,
-            ..NematicParameters::default()
-        },
-        flow: None,
-    };
-    let cost = |case: &NematicCase| -> Result<f64, AnalysisError> {
-        let battery = NematicBattery::new(&case.nematic, &scene.accuracy);
-        let battery = battery.map_err(|source| AnalysisError::Nematic {
-            case: scene.case_name(case),
-            source,
-        })?;
-        Ok(case_cost(case, &battery).seconds)
-    };
-    let all = scene.cases().iter().map(cost).sum::<Result<f64, _>>()?;
-    Ok(all / cost(&measured)?)
-}
-
-/// Processor seconds of a case of a million cells without flow.
-const STILL_SECONDS: f64 = 25.0;
-/// The same with flow.
-const FLOWING_SECONDS: f64 = 130.0;
-/// Growth with the number of cells.
-const CELLS_POWER: f64 = 1.22;
 
 #[cfg(test)]
 mod tests {

@@ -61,7 +61,7 @@ impl<E: Experiment> Plan<E> {
         let is_side_by_side =
             !experiment.uses_all_threads() || (largest <= BIG_CASE && costs.len() > 1);
         // with all threads in a case, its own seconds are not those of all threads
-        let speed = Speed::of(if is_side_by_side { &taken } else { &[] });
+        let speed = Speed::of(E::SYSTEM, if is_side_by_side { &taken } else { &[] });
         let estimate = estimate(&costs, speed, threads(settings.jobs), is_side_by_side);
         Ok(Self {
             cases,
@@ -83,12 +83,12 @@ impl<E: Experiment> Plan<E> {
         self.todo.iter().map(|(k, _)| *k)
     }
 
-    /// The same in the order of the work: side by side the longest go first, so that no thread waits for them at the end.
-    pub fn order(&self) -> Vec<usize> {
+    /// The same in the order of the work, with the seconds each is expected to take: side by side the longest go first, so that no thread waits for them at the end.
+    pub fn order(&self) -> Vec<(usize, f64)> {
         let mut todo = self.todo.clone();
         if self.is_side_by_side {
             todo.sort_by(|a, b| b.1.total_cmp(&a.1));
         }
-        todo.into_iter().map(|(k, _)| k).collect()
+        todo
     }
 }

@@ -36,14 +36,14 @@ pub(super) fn run(args: &TightenArgs, knots: &KnotTable) -> Result<(), XtaskErro
                 n => tighten_by_hops(entry, n, &settings)?,
             };
             let row = Row::new(entry, &tight, write(entry, &tight, args, folder)?);
-            println!("{}", row.told);
+            say!("{}", row.told);
             Ok(row)
         })
         .collect();
     let rows = made.into_iter().collect::<Result<Vec<Row>, _>>()?;
     let text = table::markdown(&rows);
     write_atomic_bytes(&folder.join("table.md"), text.as_bytes()).map_err(KnotError::from)?;
-    println!("curves, certificates and table: {}", folder.display());
+    say!("curves, certificates and table: {}", folder.display());
     Ok(())
 }
 

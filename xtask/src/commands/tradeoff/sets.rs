@@ -47,7 +47,7 @@ fn write_record(table: Measured, record: &Record) -> Result<(), XtaskError> {
     let text = serde_json::to_string_pretty(record)
         .map_err(|e| XtaskError::Input(format!("{}: {e}", path.display())))?;
     data::write(&path, format!("{text}\n").as_bytes())?;
-    println!("recorded: {}", path.display());
+    say!("recorded: {}", path.display());
     Ok(())
 }
 
@@ -69,7 +69,7 @@ pub fn record_table(system: System, rows: &[TradeoffRow]) -> Result<(), XtaskErr
     };
     let path = place(table, "csv");
     write_table(&path, &points)?;
-    println!("recorded: {}", path.display());
+    say!("recorded: {}", path.display());
     write_record(table, &record)?;
     let text = crate::tradeoff::section(Quality::Standard, system, rows);
     record_part(PAGE, &format!("{} settings", system.name()), &text)
@@ -104,7 +104,7 @@ pub fn measure_set(args: &TradeoffArgs, name: &str, folder: &Path) -> Result<(),
         if set == CaseSet::Factor {
             let cover = factor_of_estimates(system, &points, &rows)
                 .ok_or_else(|| XtaskError::Input(format!("no case of {} ran", system.name())))?;
-            println!(
+            say!(
                 "{}: {:.3} times the raw estimate covers {:.1} % of the errors of {} cases",
                 system.name(),
                 cover.scale,
@@ -134,7 +134,7 @@ pub fn measure_set(args: &TradeoffArgs, name: &str, folder: &Path) -> Result<(),
         write_table(&folder.join("check.csv"), &checked)?;
         let report = crate::tradeoff::check_report(&checked);
         data::write(&folder.join("check.md"), report.as_bytes())?;
-        println!("{report}");
+        say!("{report}");
         if args.record {
             for table in Measured::ALL {
                 let name = table.system().name();
