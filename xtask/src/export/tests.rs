@@ -65,7 +65,8 @@ fn colloid(out: &Path, scene: &str, keep_fields: bool) -> PathBuf {
 
 /// What a program in Python says of arguments, as the JSON on its last line.
 fn told(program: &str, arguments: &[&Path]) -> Value {
-    let python = Outside::Python.find().expect(Outside::Python.needs());
+    let needs = Outside::Python.needs();
+    let python = Outside::Python.find().expect(needs);
     let mut command = Command::new(python);
     let output = command.args(["-c", program]).args(arguments).output();
     let output = output.unwrap();
