@@ -80,7 +80,7 @@ pub enum Command {
   cargo xtask determinism                           all that the draft figures draw: three times some minutes
   cargo xtask determinism scenes/elastic-quick.toml    a scene instead")]
     Determinism(DeterminismArgs),
-    /// Write the shapes and fields of a case for ParaView, PyVista, meshio, numpy or nemaktis.
+    /// Write the shapes and fields of a case for ParaView, PyVista, numpy or nemaktis.
     ///
     /// A fibre becomes a line with arc length, tangent, curvature, twist, stretch and energy density, once charged and over
     /// its discharge; a colloid becomes its defect lines, the particle's surface, the plane through its centre and, where

@@ -6,7 +6,7 @@ use std::process::Command;
 /// A program outside of the workspace. Tests that need one are ignored by name, so that a run without it counts them as skipped.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Outside {
-    /// Python with numpy, PyVista and meshio.
+    /// Python with numpy, VTK and PyVista.
     Python,
     /// A browser that runs without a screen.
     Browser,
@@ -27,7 +27,7 @@ impl Outside {
     pub fn needs(self) -> &'static str {
         match self {
             Self::Python => {
-                "needs Python with numpy, pyvista and meshio (python3, or the one that TOPO_PYTHON names)"
+                "needs Python with numpy, vtk and pyvista (python3, or the one that TOPO_PYTHON names)"
             }
             Self::Browser => "needs Chromium (from PATH, or the one that TOPO_BROWSER names)",
         }
@@ -39,7 +39,7 @@ impl Outside {
             Self::Python => (
                 "TOPO_PYTHON",
                 &["python3"],
-                &["-c", "import numpy, pyvista, meshio"],
+                &["-c", "import numpy, vtk, pyvista"],
             ),
             Self::Browser => (
                 "TOPO_BROWSER",

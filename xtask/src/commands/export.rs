@@ -1,4 +1,4 @@
-//! `cargo xtask export CASE`: files for ParaView, PyVista, meshio, numpy and nemaktis.
+//! `cargo xtask export CASE`: files for ParaView, PyVista, numpy and nemaktis.
 
 use crate::cli::{ExportArgs, ExportFormat};
 use crate::error::XtaskError;

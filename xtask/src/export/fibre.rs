@@ -1,13 +1,14 @@
 //! A fibre: charged, and over its discharges.
 
+use super::about::About;
 use super::npz::Archive;
 use super::vtk::{self, Array};
-use super::{Files, Wanted};
-use crate::data::read_csv;
+use super::{Files, Wanted, damaged, table};
 use crate::error::XtaskError;
 use nalgebra::Vector3;
 use serde::Deserialize;
 use std::path::Path;
+use topo_rod::Tube;
 
 /// A vertex of `charged.csv` or `snapshots.csv`.
 #[derive(Debug, Clone, Copy, Deserialize)]
@@ -40,14 +41,31 @@ struct Shape {
 }
 
 /// Writes the files of a case.
-pub fn write(case: &Path, wanted: &Wanted, files: &mut Files<'_>) -> Result<(), XtaskError> {
-    let charged: Vec<Vertex> = read_csv(&case.join("charged.csv"))?;
-    let charged = Shape::new(&charged, true, &case.join("charged.csv"))?;
-    let path = case.join("snapshots.csv");
-    let vertices: Vec<Vertex> = read_csv(&path)?;
+///
+/// Two strands touch at the distance `contact_diameter`, which the reading of L/h sets: the tube to draw has half of it as
+/// its radius, not the radius h = 1 that sets the stiffness.
+pub fn write(
+    case: &Path,
+    tube: &Tube,
+    about: About,
+    wanted: &Wanted,
+    files: &mut Files<'_>,
+) -> Result<(), XtaskError> {
+    let about = about
+        .with("tube_radius", 0.5 * tube.contact_diameter)
+        .with("contact_diameter", tube.contact_diameter)
+        .with("friction_range", tube.friction_range)
+        .with("length", tube.length)
+        .with("start_length", tube.start_length)
+        .with("units.energy_density", "E_b h^2")
+        .with("units.curvature", "1/h")
+        .with("units.twist", "1/h");
+    let charged: Vec<Vertex> = table(case, "charged.csv")?;
+    let charged = Shape::new(&charged, true, case)?;
+    let vertices: Vec<Vertex> = table(case, "snapshots.csv")?;
     let mut cuts: Vec<(f64, Vec<Shape>)> = Vec::new();
     for group in vertices.chunk_by(|a, b| a.cut == b.cut && a.time == b.time) {
-        let shape = Shape::new(group, false, &path)?;
+        let shape = Shape::new(group, false, case)?;
         let at = group[0].cut.unwrap_or(0.0);
         match cuts.last_mut() {
             Some((cut, shapes)) if *cut == at => shapes.push(shape),
@@ -55,20 +73,21 @@ pub fn write(case: &Path, wanted: &Wanted, files: &mut Files<'_>) -> Result<(), 
         }
     }
     if wanted.vtk {
-        charged.write_vtk(&files.place("charged.vtp"))?;
-        for (k, (_, shapes)) in cuts.iter().enumerate() {
+        charged.write_vtk(&about.at(None), &files.place("charged.vtp"))?;
+        for (k, (cut, shapes)) in cuts.iter().enumerate() {
             let name = format!("discharge-{}", k + 1);
             let mut times = Vec::new();
             for (i, shape) in shapes.iter().enumerate() {
                 let file = format!("{name}-{i:02}.vtp");
-                shape.write_vtk(&files.place(&file))?;
+                let about = about.at(Some(shape.time)).with("cut", *cut);
+                shape.write_vtk(&about, &files.place(&file))?;
                 times.push((shape.time, file));
             }
-            vtk::series(&files.place(&format!("{name}.pvd")), &times)?;
+            files.series(&name, &times)?;
         }
     }
     if wanted.npz {
-        let mut archive = Archive::new();
+        let mut archive = Archive::new(&about)?;
         add(&mut archive, "charged", std::slice::from_ref(&charged))?;
         for (k, (cut, shapes)) in cuts.iter().enumerate() {
             let name = format!("discharge{}", k + 1);
@@ -93,6 +112,7 @@ fn add(archive: &mut Archive, name: &str, shapes: &[Shape]) -> Result<(), XtaskE
     } else {
         vec![shapes.len(), n]
     };
+    archive.add(&format!("{name}_closed"), &[], vec![first.closed])?;
     let mut put = |what: &str, of: &dyn Fn(&Shape) -> Vec<f64>| {
         let values: Vec<f64> = shapes.iter().flat_map(of).collect();
         let mut shape = lead.clone();
@@ -115,13 +135,16 @@ fn add(archive: &mut Archive, name: &str, shapes: &[Shape]) -> Result<(), XtaskE
 }
 
 impl Shape {
-    fn new(vertices: &[Vertex], closed: bool, path: &Path) -> Result<Self, XtaskError> {
+    fn new(vertices: &[Vertex], closed: bool, case: &Path) -> Result<Self, XtaskError> {
         let n = vertices.len();
         if n < 4 {
-            return Err(XtaskError::Table {
-                path: path.to_owned(),
-                reason: format!("a shape of {n} vertices, at least 4 are needed"),
-            });
+            let name = if closed {
+                "charged.csv"
+            } else {
+                "snapshots.csv"
+            };
+            let reason = format!("a shape of {n} vertices, at least 4 are needed");
+            return Err(damaged(case, name, &reason));
         }
         let points: Vec<Vector3<f64>> = vertices
             .iter()
@@ -166,16 +189,17 @@ impl Shape {
         })
     }
 
-    fn write_vtk(&self, path: &Path) -> Result<(), XtaskError> {
+    fn write_vtk(&self, about: &About, path: &Path) -> Result<(), XtaskError> {
+        let scalars = |name, values: &[f64]| Array::scalars(name, values.iter().copied());
         let mut arrays = vec![
-            Array::scalars("s", self.s.clone()),
+            scalars("s", &self.s),
             Array::vectors("tangent", self.tangent.iter().copied()),
-            Array::scalars("curvature", self.curvature.clone()),
-            Array::scalars("stretch", self.stretch.clone()),
-            Array::scalars("energy_density", self.energy_density.clone()),
+            scalars("curvature", &self.curvature),
+            scalars("stretch", &self.stretch),
+            scalars("energy_density", &self.energy_density),
         ];
-        arrays.extend(self.twist.clone().map(|t| Array::scalars("twist", t)));
-        vtk::line(path, &self.points, self.closed, arrays)
+        arrays.extend(self.twist.as_ref().map(|t| scalars("twist", t)));
+        vtk::line(path, about, &self.points, self.closed, &arrays)
     }
 }
 

@@ -1,10 +1,11 @@
 //! Archives of arrays for numpy; the only file that names the crates which write them.
 
+use super::about::{About, Fact};
 use crate::data;
 use crate::error::XtaskError;
 use ndarray::{ArrayD, IxDyn};
-use ndarray_npy::{NpzWriter, WritableElement};
-use std::io::Cursor;
+use ndarray_npy::{NpzWriter, WritableElement, WriteDataError};
+use std::io::{Cursor, Write};
 use std::path::Path;
 
 /// An archive in the making.
@@ -13,11 +14,21 @@ pub struct Archive {
 }
 
 impl Archive {
-    /// An empty one.
-    pub fn new() -> Self {
-        Self {
+    /// One that says what it is about.
+    pub fn new(about: &About) -> Result<Self, XtaskError> {
+        let mut archive = Self {
             writer: NpzWriter::new(Cursor::new(Vec::new())),
+        };
+        for (name, fact) in about.facts() {
+            match fact {
+                Fact::Numbers(values) if values.len() == 1 => {
+                    archive.add(name, &[], values.clone())?;
+                }
+                Fact::Numbers(values) => archive.add(name, &[values.len()], values.clone())?,
+                Fact::Words(words) => archive.add(name, &[], vec![Words::new(name, words)?])?,
+            }
         }
+        Ok(archive)
     }
 
     /// Adds an array, its last index running fastest.
@@ -27,14 +38,11 @@ impl Archive {
         shape: &[usize],
         values: Vec<T>,
     ) -> Result<(), XtaskError> {
-        let wrong = |reason: String| XtaskError::Drawing {
-            reason: format!("array {name}: {reason}"),
-        };
         let array =
-            ArrayD::from_shape_vec(IxDyn(shape), values).map_err(|e| wrong(e.to_string()))?;
+            ArrayD::from_shape_vec(IxDyn(shape), values).map_err(|e| wrong(name, e.to_string()))?;
         self.writer
             .add_array(name, &array)
-            .map_err(|e| wrong(e.to_string()))?;
+            .map_err(|e| wrong(name, e.to_string()))?;
         Ok(())
     }
 
@@ -44,5 +52,46 @@ impl Archive {
             reason: format!("{}: {e}", path.display()),
         })?;
         data::write(path, bytes.get_ref())
+    }
+}
+
+fn wrong(name: &str, reason: String) -> XtaskError {
+    XtaskError::Drawing {
+        reason: format!("array {name}: {reason}"),
+    }
+}
+
+/// Most characters of words. Numpy's strings have a fixed length, which belongs to the type, and drop the zeros at the end.
+const LONGEST: usize = 256;
+
+/// A string of numpy.
+struct Words([char; LONGEST]);
+
+impl Words {
+    fn new(name: &str, words: &str) -> Result<Self, XtaskError> {
+        if words.chars().count() > LONGEST {
+            let reason = format!("more than {LONGEST} characters: {words}");
+            return Err(wrong(name, reason));
+        }
+        let mut all = ['\0'; LONGEST];
+        all.iter_mut().zip(words.chars()).for_each(|(a, c)| *a = c);
+        Ok(Self(all))
+    }
+}
+
+impl WritableElement for Words {
+    fn type_descriptor() -> py_literal::Value {
+        py_literal::Value::String(format!("<U{LONGEST}"))
+    }
+
+    fn write<W: Write>(&self, mut writer: W) -> Result<(), WriteDataError> {
+        for c in self.0 {
+            writer.write_all(&u32::from(c).to_le_bytes())?;
+        }
+        Ok(())
+    }
+
+    fn write_slice<W: Write>(slice: &[Self], mut writer: W) -> Result<(), WriteDataError> {
+        slice.iter().try_for_each(|words| words.write(&mut writer))
     }
 }

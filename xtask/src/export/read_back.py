@@ -1,16 +1,17 @@
-"""Reads the files of two exported cases with PyVista, meshio and numpy, and says what it found as JSON."""
+"""Reads the files of two exported cases with PyVista and numpy, runs the example of a page, and says what it found as JSON."""
 
 import json
+import os
+import re
 import sys
 import warnings
 from pathlib import Path
 
-import meshio
 import numpy as np
 import pyvista as pv
 
 warnings.filterwarnings("ignore")
-fibre, colloid = Path(sys.argv[1]), Path(sys.argv[2])
+fibre, colloid, page = Path(sys.argv[1]), Path(sys.argv[2]), Path(sys.argv[3])
 told = {}
 
 charged = pv.read(fibre / "charged.vtp")
@@ -19,8 +20,31 @@ told["fibre_arrays"] = sorted(charged.point_data.keys())
 told["fibre_length"] = float(charged.length) if charged.n_cells == 0 else float(
     np.linalg.norm(np.diff(charged.points[charged.lines[1:]], axis=0), axis=1).sum())
 told["fibre_curvature"] = float(charged["curvature"].mean())
-tube = charged.tube(radius=1.0)
-told["tube_cells"] = tube.n_cells
+told["contact_diameter"] = float(charged.field_data["contact_diameter"][0])
+told["tube_radius"] = float(charged.field_data["tube_radius"][0])
+
+# strands: points of the fibre further apart along it than contact cares for
+around = np.r_[charged.points, charged.points[:1]]
+fine = np.concatenate([a + (b - a) * np.arange(8)[:, None] / 8 for a, b in zip(around, around[1:])])
+arc = np.r_[0, np.cumsum(np.linalg.norm(np.diff(fine, axis=0), axis=1))]
+length = arc[-1] + np.linalg.norm(fine[-1] - fine[0])
+apart = np.abs(arc[:, None] - arc)
+apart = np.minimum(apart, length - apart)
+distance = np.linalg.norm(fine[:, None] - fine, axis=2)
+told["strand_distance"] = float(distance[apart > np.pi / 2 * told["contact_diameter"]].min())
+
+# the example of the page, as it stands there
+shown = []
+pv.DataSet.plot = lambda self, **options: shown.append((self, options))
+example = re.search(r"```python\n(.*?)```", page.read_text(encoding="utf-8"), re.S).group(1)
+before = os.getcwd()
+os.chdir(fibre)
+exec(example, {})
+os.chdir(before)
+tube, options = shown[0]
+told["shown_array"] = options["scalars"] in tube.point_data
+far = np.linalg.norm(tube.points[:, None] - charged.points, axis=2).min(axis=1)
+told["shown_radius"] = float(np.median(far))
 
 reader = pv.get_reader(fibre / "discharge-1.pvd")
 told["fibre_times"] = [float(t) for t in reader.time_values]
@@ -67,12 +91,7 @@ told["nemaktis_spacing"] = float(nem.spacing[0] / field.spacing[0])
 
 sphere = pv.read(colloid / "particle.vtu")
 told["sphere_area"] = float(sphere.extract_surface().area)
-mesh = meshio.read(colloid / "particle.vtu")
-told["meshio_points"] = len(mesh.points)
-told["meshio_cells"] = {c.type: len(c.data) for c in mesh.cells}
-told["meshio_same"] = bool(np.array_equal(mesh.point_data["director"], sphere["director"]))
-lines = meshio.read(colloid / "lines-charged.vtu")
-told["meshio_lines"] = {c.type: len(c.data) for c in lines.cells}
+told["sphere_unit"] = float(np.abs(np.linalg.norm(sphere["director"], axis=1) - 1).max())
 told["line_times"] = len(pv.get_reader(colloid / "lines.pvd").time_values)
 told["last_lines"] = pv.read(sorted(colloid.glob("lines-[0-9]*.vtu"))[-1]).n_cells
 plane = pv.read(colloid / "plane-charged.vti")
