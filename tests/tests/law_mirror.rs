@@ -91,7 +91,7 @@ fn law_mirrored_knots_give_mirrored_runs() {
             assert!(!image.warnings.contains("tied"), "{}", image.warnings);
         }
         assert_eq!(knot.len(), image.len());
-        let folder = |row: &SweepRow| out.path().join("elastic").join(&row.case);
+        let folder = |row: &SweepRow| out.path().join("mirror").join(&row.case);
         let (ours, theirs) = (folder(&knot[0]), folder(&image[0]));
         for file in ["charged.csv", "snapshots.csv"] {
             let read = |folder: &Path| read_table::<Vertex>(&folder.join(file)).unwrap();
