@@ -117,7 +117,7 @@ fn scenes() -> Vec<(&'static str, String, usize)> {
                 "knot = \"3_1\"",
                 "[rod.contact]\n[rod.friction]\nrange = \"contact\"",
                 "",
-                "gamma = 1.0\nreuse = 1",
+                "reuse = 1",
             ),
             1,
         ),
