@@ -20,7 +20,10 @@ fn a_scene_says_what_is_modelled() {
     let cases = bare.cases(&topo_knots::KnotTable::builtin()).unwrap();
     assert_eq!(
         cases.iter().map(|c| bare.case_name(c)).collect::<Vec<_>>(),
-        ["3_1_untwisted_shrunk_n200", "4_1_untwisted_shrunk_n200"]
+        [
+            "3_1_untwisted_shrunk_n200_no-contact_no-friction",
+            "4_1_untwisted_shrunk_n200_no-contact_no-friction"
+        ]
     );
 }
 
