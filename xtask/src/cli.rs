@@ -3,7 +3,7 @@
 use crate::figures::Quality;
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
-use topo_analysis::Shard;
+use topo_lab::Shard;
 
 mod count;
 mod knot;
@@ -260,7 +260,7 @@ pub struct SystemsArgs {
 
 impl SystemsArgs {
     /// Whether a system is among those asked for.
-    pub fn takes(&self, system: topo_analysis::System) -> bool {
+    pub fn takes(&self, system: topo_lab::System) -> bool {
         self.only.is_empty() || self.only.iter().any(|name| name == system.name())
     }
 }

@@ -24,7 +24,7 @@ use crate::error::XtaskError;
 use crate::figures::Quality;
 use crate::interrupt;
 use std::process::ExitCode;
-use topo_analysis::{Effort, SweepSettings};
+use topo_lab::{Effort, SweepSettings};
 
 /// Runs the command; only `knot identify` ends well in more ways than one.
 pub fn dispatch(cli: Cli) -> Result<ExitCode, XtaskError> {

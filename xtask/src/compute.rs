@@ -15,12 +15,12 @@ use crate::provenance::Provenance;
 pub use report::Failures;
 use std::path::Path;
 use std::time::Instant;
-use topo_analysis::{
-    AnalysisError, ElasticScene, Event, NematicScene, OwnKnots, Preset, Scene, Shard,
-    SweepSettings, Wish, tight_shapes, with_jobs, write_knots,
-};
 use topo_core::Interrupt;
 use topo_knots::{KnotTable, TightenSettings};
+use topo_lab::{
+    ElasticScene, Event, LabError, NematicScene, OwnKnots, Preset, Scene, Shard, SweepSettings,
+    Wish, tight_shapes, with_jobs, write_knots,
+};
 
 /// The tables that figures need.
 #[derive(Debug)]
@@ -81,7 +81,7 @@ pub fn tables(
         only_finished: order.as_is,
         ..SweepSettings::new(order.results)
     };
-    topo_analysis::writable(order.results)?;
+    topo_lab::writable(order.results)?;
     estimate::tell(&estimate::of_order(order, &settings)?);
     if order.knots && !order.as_is {
         let start = Instant::now();
@@ -99,7 +99,7 @@ pub fn tables(
             let standard = TightenSettings::standard();
             let more = tight_shapes(&more, table, &standard, order.results, stop, &told)?;
             shapes.extend(more);
-            Ok::<_, AnalysisError>(shapes)
+            Ok::<_, LabError>(shapes)
         })??;
         progress.finish();
         interrupt::check(stop)?;
@@ -220,8 +220,14 @@ pub fn preset(quality: Quality) -> Preset {
     }
 }
 
-impl From<AnalysisError> for XtaskError {
-    fn from(e: AnalysisError) -> Self {
+impl From<LabError> for XtaskError {
+    fn from(e: LabError) -> Self {
+        Self::Input(e.to_string())
+    }
+}
+
+impl From<topo_analysis::AnalysisError> for XtaskError {
+    fn from(e: topo_analysis::AnalysisError) -> Self {
         Self::Input(e.to_string())
     }
 }

@@ -15,7 +15,7 @@ use about::About;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
-use topo_analysis::{NEMATIC_RESULTS_VERSION, RESULTS_VERSION};
+use topo_lab::{NEMATIC_RESULTS_VERSION, RESULTS_VERSION};
 
 /// Which files.
 #[derive(Debug, Clone, Copy)]

@@ -7,7 +7,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 use std::sync::{Mutex, MutexGuard};
 use std::time::{Duration, Instant};
-use topo_analysis::Estimate;
+use topo_lab::Estimate;
 use work::Work;
 
 /// Shortest time between two plain lines.

@@ -7,7 +7,7 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use topo_analysis::Estimate;
+use topo_lab::Estimate;
 
 /// Where figures come from.
 #[derive(Debug, Serialize)]

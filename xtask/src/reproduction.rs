@@ -12,7 +12,7 @@ use crate::error::XtaskError;
 pub use report::{section, write};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
-use topo_analysis::{ElasticScene, Preset, Purpose, Variant};
+use topo_lab::{ElasticScene, Preset, Purpose, Variant};
 
 /// How far a claim is borne out.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]

@@ -5,7 +5,7 @@ use crate::data;
 use crate::error::XtaskError;
 use crate::figures::Quality;
 use std::path::Path;
-use topo_analysis::NematicScene;
+use topo_lab::NematicScene;
 
 /// Writes `scenes/elastic.toml` and `scenes/nematic.toml` into the results folder.
 pub fn write(results: &Path, quality: Quality) -> Result<(), XtaskError> {
@@ -45,7 +45,7 @@ fn nematic(quality: Quality) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use topo_analysis::{ElasticScene, Scene};
+    use topo_lab::{ElasticScene, Scene};
 
     #[test]
     fn the_scenes_are_those_of_the_figures() {

@@ -7,7 +7,7 @@ use crate::figures::Quality;
 use crate::plot::canvas::{Canvas, Picture};
 use crate::plot::color::{BLUE, INK, VERMILION};
 use crate::plot::style::Style;
-use topo_analysis::StabilityRow;
+use topo_lab::StabilityRow;
 
 /// Runs of one pair of axes.
 struct Map<'a> {

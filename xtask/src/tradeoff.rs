@@ -9,9 +9,8 @@ use crate::plot::color::{BLUE, GREEN, INK, PURPLE, QUIET, VERMILION};
 use crate::plot::panel::{Axis, Panel};
 use crate::plot::style::Style;
 use kuva::prelude::{LinePlot, Plot, ScatterPlot};
-use topo_analysis::{
-    CheckRow, REFERENCE, Setting, System, TradeoffRow, points, quantile, settings_of,
-};
+use topo_analysis::quantile;
+use topo_lab::{CheckRow, REFERENCE, Setting, System, TradeoffRow, points, settings_of};
 
 /// Errors that the short table asks for.
 const WISHES: [f64; 8] = [0.2, 0.1, 0.05, 0.03, 0.02, 0.01, 0.005, 0.002];

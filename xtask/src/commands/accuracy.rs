@@ -5,11 +5,12 @@ use crate::compute::preset;
 use crate::error::XtaskError;
 use crate::interrupt;
 use crate::progress::Progress;
-use topo_analysis::{
-    ACCURACY_CASES, ElasticScene, Event, Preset, SweepSettings, measure_accuracy, quantile,
-    tight_shapes, with_jobs, write_table,
-};
+use topo_analysis::{quantile, write_table};
 use topo_knots::KnotTable;
+use topo_lab::{
+    ACCURACY_CASES, ElasticScene, Event, Preset, SweepSettings, measure_accuracy, tight_shapes,
+    with_jobs,
+};
 
 pub fn run(args: &AccuracyArgs) -> Result<(), XtaskError> {
     accuracy(preset(args.quality), &super::settings(&args.work)?)
@@ -19,7 +20,7 @@ pub fn run(args: &AccuracyArgs) -> Result<(), XtaskError> {
 fn accuracy(preset: Preset, settings: &SweepSettings) -> Result<(), XtaskError> {
     let scene = ElasticScene::published(preset);
     let table = KnotTable::builtin();
-    topo_analysis::writable(&settings.out)?;
+    topo_lab::writable(&settings.out)?;
     let mut names: Vec<String> = Vec::new();
     for (knot, _) in ACCURACY_CASES {
         if names.iter().all(|name| name != knot) {

@@ -9,9 +9,8 @@ use crate::error::XtaskError;
 use crate::plot::text::{number, significant};
 use crate::progress::Progress;
 use crate::{data, interrupt};
-use topo_analysis::{
-    BucklingRow, buckling_cases, buckling_study, read_table, with_jobs, write_table,
-};
+use topo_analysis::{read_table, write_table};
+use topo_lab::{BucklingRow, buckling_cases, buckling_study, with_jobs};
 
 pub fn run(args: &BucklingArgs) -> Result<(), XtaskError> {
     let jobs = threads(args.work.jobs)?;

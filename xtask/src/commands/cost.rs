@@ -5,7 +5,8 @@ use super::record::record;
 use crate::cli::CostArgs;
 use crate::error::XtaskError;
 use crate::{data, interrupt};
-use topo_analysis::{TermCost, term_costs, write_table};
+use topo_analysis::write_table;
+use topo_lab::{TermCost, term_costs};
 
 pub fn run(args: &CostArgs) -> Result<(), XtaskError> {
     let effort = effort(args.quality)?;

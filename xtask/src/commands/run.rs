@@ -3,7 +3,7 @@
 use crate::cli::RunArgs;
 use crate::compute;
 use crate::error::XtaskError;
-use topo_analysis::{SweepSettings, Wish};
+use topo_lab::{SweepSettings, Wish};
 
 pub fn run(args: &RunArgs) -> Result<(), XtaskError> {
     if !(0.0..=1e9).contains(&args.checkpoint) {

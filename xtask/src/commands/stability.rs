@@ -7,7 +7,8 @@ use crate::cli::SystemsArgs;
 use crate::error::XtaskError;
 use crate::progress::Progress;
 use crate::{data, interrupt, stability};
-use topo_analysis::{StabilityRow, System, n_extremes, read_table, with_jobs, write_table};
+use topo_analysis::{read_table, write_table};
+use topo_lab::{StabilityRow, System, n_extremes, with_jobs};
 
 /// Changes with whatever changes the outcome of a run.
 const VERSION: u32 = 3;
@@ -44,7 +45,7 @@ pub fn run(args: &SystemsArgs) -> Result<(), XtaskError> {
             ));
         };
         let rows = with_jobs(jobs, || {
-            topo_analysis::stability(system, effort, &known, &stop, &told)
+            topo_lab::stability(system, effort, &known, &stop, &told)
         })?;
         write_table(&kept, &rows)?;
         if rows.len() < n_runs {

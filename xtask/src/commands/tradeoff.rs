@@ -11,11 +11,12 @@ use crate::cli::{SystemsArgs, TradeoffArgs};
 use crate::error::XtaskError;
 use crate::progress::Progress;
 use crate::{data, interrupt};
-use topo_analysis::{
-    AnalysisError, Effort, System, TradeoffEvent, TradeoffRun, TradeoffWork, compared, read_table,
-    tradeoff, with_jobs, writable, write_table,
-};
+use topo_analysis::{read_table, write_table};
 use topo_core::Interrupt;
+use topo_lab::{
+    Effort, LabError, System, TradeoffEvent, TradeoffRun, TradeoffWork, compared, tradeoff,
+    with_jobs, writable,
+};
 
 /// Changes with whatever changes the numbers of a run.
 const VERSION: u32 = 3;
@@ -101,7 +102,7 @@ fn measure(
     args: &SystemsArgs,
     kept: &Path,
     stop: &Interrupt,
-    run: impl Fn(&TradeoffWork<'_>) -> Result<Vec<TradeoffRun>, AnalysisError> + Send + Sync,
+    run: impl Fn(&TradeoffWork<'_>) -> Result<Vec<TradeoffRun>, LabError> + Send + Sync,
 ) -> Result<Vec<TradeoffRun>, XtaskError> {
     let known: Vec<TradeoffRun> = if kept.exists() && !args.work.fresh {
         read_table(kept)?

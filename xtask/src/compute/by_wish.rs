@@ -4,7 +4,8 @@ use std::path::Path;
 
 use super::estimate::duration;
 use crate::error::XtaskError;
-use topo_analysis::{ErrorRow, Grant, Wish, median, quantile, write_table};
+use topo_analysis::{median, quantile, write_table};
+use topo_lab::{ErrorRow, Grant, Wish};
 
 /// Tells which setting grants a wish; `unit` is what its resolution counts.
 pub fn tell_grant(grant: &Grant, unit: &str) {

@@ -3,8 +3,8 @@
 use super::report::{Failures, Reporter, tell_taken};
 use super::{by_wish, estimate};
 use crate::error::XtaskError;
-use topo_analysis::{Cuts, ElasticReport, ElasticScene, SweepSettings, errors_of_rods, run_sweep};
 use topo_knots::KnotTable;
+use topo_lab::{Cuts, ElasticReport, ElasticScene, SweepSettings, errors_of_rods, run_sweep};
 
 /// Runs a user's scene and prints its table.
 pub fn scene(

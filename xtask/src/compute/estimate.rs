@@ -5,10 +5,10 @@ use crate::error::XtaskError;
 use crate::figures::Quality;
 use indicatif::{DecimalBytes, HumanDuration};
 use std::time::Duration;
-use topo_analysis::{
+use topo_knots::{KnotTable, TightenSettings};
+use topo_lab::{
     ElasticScene, Estimate, NematicScene, SweepSettings, estimate_nematic_sweep, estimate_sweep,
 };
-use topo_knots::{KnotTable, TightenSettings};
 
 /// Stages of a command with what each is expected to take, as they follow each other; those with nothing to do are left out.
 pub type Stages = Vec<(&'static str, Estimate)>;
@@ -229,7 +229,7 @@ mod tests {
             jobs: 1,
             ..SweepSettings::new(folder.path())
         };
-        let mut scene = ElasticScene::published(topo_analysis::Preset::Draft);
+        let mut scene = ElasticScene::published(topo_lab::Preset::Draft);
         (scene.knots, scene.twists) = (vec!["3_1".to_owned()], vec![0.0, 1.0]);
         let stages = of_elastic(&scene, &KnotTable::builtin(), &settings).unwrap();
         let names: Vec<_> = stages.iter().map(|(name, e)| (*name, e.n_cases)).collect();

@@ -3,10 +3,8 @@
 use super::report::{Failures, Reporter, tell_taken};
 use super::{by_wish, estimate};
 use crate::error::XtaskError;
-use topo_analysis::{
-    NematicReport, NematicScene, SweepSettings, errors_of_colloids, nematic_resonance,
-    run_nematic_sweep,
-};
+use topo_analysis::nematic_resonance;
+use topo_lab::{NematicReport, NematicScene, SweepSettings, errors_of_colloids, run_nematic_sweep};
 
 /// Runs a user's scene and prints its table.
 pub fn scene(scene: &NematicScene, settings: &SweepSettings) -> Result<(), XtaskError> {

@@ -5,7 +5,7 @@ use crate::error::XtaskError;
 use crate::progress::Progress;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
-use topo_analysis::{Estimate, Event, FailedCase};
+use topo_lab::{Estimate, Event, FailedCase};
 
 /// Tells what they took.
 pub fn tell_taken(estimate: &Estimate, seconds: f64) {

@@ -9,7 +9,8 @@ use crate::error::XtaskError;
 use nalgebra::Vector3;
 use std::f64::consts::{PI, TAU};
 use std::path::Path;
-use topo_analysis::{FieldSnapshot, LinePoint, SlicePoint};
+use topo_analysis::{LinePoint, SlicePoint};
+use topo_lab::FieldSnapshot;
 use topo_nematic::NematicParameters;
 
 /// Points of the particle's surface around the axis; half as many from pole to pole.

@@ -5,7 +5,7 @@ use super::npz::Archive;
 use super::vtk::{self, Array, Lattice};
 use crate::error::XtaskError;
 use std::path::Path;
-use topo_analysis::FieldSnapshot;
+use topo_lab::FieldSnapshot;
 use topo_nematic::{matrix, order_and_director};
 
 /// What follows from a field: zero inside the particle.

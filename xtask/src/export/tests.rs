@@ -10,11 +10,11 @@ use crate::provenance::workspace;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use topo_analysis::{
-    ElasticScene, NematicScene, RESULTS_VERSION, SweepSettings, run_nematic_sweep, run_sweep,
-    write_table,
-};
+use topo_analysis::write_table;
 use topo_knots::KnotTable;
+use topo_lab::{
+    ElasticScene, NematicScene, RESULTS_VERSION, SweepSettings, run_nematic_sweep, run_sweep,
+};
 
 /// Shorter than its ropelength, so that its tube is thinner than 2h.
 const FIBRE: &str = "[rod]\nknot = \"3_1\"\ntwist = 1.0\nslenderness = 25\n[rod.contact]\n[charge]\nduration = 0.02\n[discharge]\ncuts = \"all:2\"\nuntil_released = 0.6\nclosures = 4\n[accuracy]\nedges = 60\ntolerance = 1e-2\n";

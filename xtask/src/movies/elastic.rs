@@ -10,8 +10,8 @@ use crate::plot::style::Style;
 use crate::plot::text;
 use crate::plot::tube::Tube;
 use nalgebra::Vector3;
-use topo_analysis::{ElasticScene, ShapeFrame, discharge_frames, tight_shapes};
 use topo_knots::KnotTable;
+use topo_lab::{ElasticScene, ShapeFrame, discharge_frames, tight_shapes};
 
 pub const MOVIE: Movie = Movie {
     name: "movie-elastic",

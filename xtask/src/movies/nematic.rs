@@ -12,7 +12,7 @@ use crate::plot::color::{INK, QUIET, Scale, VERMILION};
 use crate::plot::style::Style;
 use crate::plot::text;
 use nalgebra::Vector3;
-use topo_analysis::{NematicFrame, NematicScene, nematic_frames};
+use topo_lab::{NematicFrame, NematicScene, nematic_frames};
 
 pub const MOVIE: Movie = Movie {
     name: "movie-nematic",

@@ -1,6 +1,6 @@
 //! How much of a stage is done and what is left of it.
 
-use topo_analysis::Estimate;
+use topo_lab::Estimate;
 
 /// Parts of a stage, and the work that each was expected to be.
 #[derive(Debug, Clone, Copy)]

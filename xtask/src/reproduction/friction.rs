@@ -7,7 +7,8 @@ use crate::plot::text;
 use serde::Serialize;
 use std::fmt::Write as _;
 use std::path::Path;
-use topo_analysis::{ElasticScene, Preset, Purpose, Variant, median};
+use topo_analysis::median;
+use topo_lab::{ElasticScene, Preset, Purpose, Variant};
 use topo_rod::FrictionRange;
 
 /// One choice of friction: times of the untwisted knots, one cut each at the largest energy density.

@@ -10,14 +10,14 @@ use crate::error::XtaskError;
 use crate::figures::Quality;
 use crate::provenance::{commit, workspace};
 use crate::{data, interrupt};
-use topo_analysis::{
+use topo_analysis::{read_table, write_table};
+use topo_lab::{
     CaseSet, CheckRow, Factor, Measured, Point, Record, Stamp, System, TradeoffRow,
-    check_estimates, compared, factor_of_estimates, ladder, points, read_table, table_hash,
-    write_table,
+    check_estimates, compared, factor_of_estimates, ladder, points, table_hash,
 };
 
 /// Where the tables lie, below the workspace.
-const TABLES: &str = "crates/topo-analysis/data";
+const TABLES: &str = "crates/topo-lab/data";
 
 fn place(table: Measured, extension: &str) -> PathBuf {
     let name = format!("tradeoff-{}.{extension}", table.system().name());

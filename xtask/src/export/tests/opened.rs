@@ -6,7 +6,8 @@ use crate::export::write;
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
-use topo_analysis::{FieldSnapshot, LinePoint, SlicePoint};
+use topo_analysis::{LinePoint, SlicePoint};
+use topo_lab::FieldSnapshot;
 
 /// What a reader of VTK must find.
 struct Wanted {
