@@ -38,14 +38,14 @@ pub fn prepare(args: &SystemsArgs) -> Result<PathBuf, CliError> {
     Ok(folder)
 }
 
+/// Hears of the rows of a system as they are there.
+pub type Hears<'a> = dyn FnMut(System, &[TradeoffRow]) -> Result<(), CliError> + 'a;
+
 /// Runs it; `measured` hears of the rows of each system.
 ///
 /// # Errors
 /// A run that is refused, a folder that cannot be written, a stop, or what `measured` says.
-pub fn run(
-    args: &SystemsArgs,
-    measured: &mut dyn FnMut(System, &[TradeoffRow]) -> Result<(), CliError>,
-) -> Result<(), CliError> {
+pub fn run(args: &SystemsArgs, measured: &mut Hears<'_>) -> Result<(), CliError> {
     let folder = &prepare(args)?;
     let effort = effort(args.quality)?;
     let stop = interrupt::install();

@@ -151,7 +151,8 @@ mod tests {
             see(&base, Some(twist));
         }
         see(&base, None);
-        let change: &[&dyn Fn(&mut ElasticScene, f64)] = &[
+        type Change = dyn Fn(&mut ElasticScene, f64);
+        let change: &[&Change] = &[
             &|s, f| s.rod.slenderness *= f,
             &|s, f| s.rod.twist_ratio *= f,
             &|s, f| s.rod.stretch_ratio *= f,

@@ -197,7 +197,8 @@ mod tests {
             *names.entry(name).or_default() += 1;
         };
         let above = |x: f64| f64::from_bits(x.to_bits() + 1);
-        let change: &[&dyn Fn(&mut NematicScene, f64)] = &[
+        type Change = dyn Fn(&mut NematicScene, f64);
+        let change: &[&Change] = &[
             &|s, f| s.nematic.radius *= f,
             &|s, f| s.nematic.spacing *= f,
             &|s, f| s.nematic.cell[2] *= f,
