@@ -105,12 +105,11 @@ fn check_disturbed(crossing_number: u32, n_each: usize) -> (usize, usize) {
                 Chirality::Chiral => chiral,
                 Chirality::Amphichiral => Handedness::Amphichiral,
             };
-            let hand = if expected == Handedness::Mirrored {
-                "m"
-            } else {
-                ""
+            let name = match expected {
+                Handedness::Mirrored => table.mirror_label(&knot.name),
+                _ => knot.name.clone(),
             };
-            assert_eq!(kind.label(), format!("{hand}{}", knot.name));
+            assert_eq!(kind.label(), name);
             assert_eq!(kind.handedness, expected, "{}", knot.name);
             n_named += 1;
             n_certain += usize::from(kind.is_certain());

@@ -73,9 +73,9 @@ pub enum Command {
     /// the scene was run with --fields, Q, director, order and velocity in all of the cell.
     #[command(after_help = "Examples:
   topo export results/elastic/3_1_twist+0.00_shrunk_n200
-  topo export results/nematic/q04_r15_h1.5_cut-link_f64_flow-on --format vtk --to seen
+  topo export results/nematic/q04_r20_h1.5_cut-link_f64_flow-on --format vtk --to seen
   topo run scenes/nematic-quick.toml --fields --out fields
-  topo export fields/nematic/q02_r15_h1.5_cut-link_f64_flow-off --format nemaktis")]
+  topo export fields/nematic-quick/q02_r15_h1.5_cut-link_f64_flow-off --format nemaktis")]
     Export(ExportArgs),
     /// The knot generator: tighten a knot, name a curve, look at the table.
     Knot(KnotArgs),
@@ -143,7 +143,7 @@ pub struct AccuracyArgs {
 pub struct RunArgs {
     /// Scene in TOML.
     pub scene: PathBuf,
-    /// Where to cut: `argmax`, `near-ties` or `all:K`; instead of the scene's own.
+    /// Where to cut: `argmax`, `near-ties`, `all:K`, or places s/L such as `0.25,0.5`; instead of the scene's own.
     #[arg(long, value_name = "CUTS")]
     pub cuts: Option<String>,
     /// Largest relative error of the discharge times (t99 of a rod, t99.9 of a colloid): picks the settings, and estimates the

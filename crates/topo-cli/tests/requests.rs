@@ -117,7 +117,7 @@ fn scenes() -> Vec<(&'static str, String, usize)> {
                 "knot = \"3_1\"",
                 "[rod.contact]\n[rod.friction]\nrange = \"contact\"",
                 "",
-                "gamma = 1.0\nreuse = 1",
+                "reuse = 1",
             ),
             1,
         ),
@@ -151,7 +151,7 @@ fn scenes() -> Vec<(&'static str, String, usize)> {
             "no-particle",
             colloid(
                 "radius = 5\nspacing = 1.25\nparticle = false\nfield = { vector = [0.0, 0.0, 1.0], anisotropy = 0.01 }",
-                "",
+                "[switch]\nto = \"keep\"",
             ),
             1,
         ),

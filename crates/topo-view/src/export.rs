@@ -112,7 +112,7 @@ fn why_no_case(folder: &Path) -> String {
     cases.sort();
     match cases.first() {
         Some(first) => format!(
-            "the folder of {} cases, no case itself; name one of them, such as {}",
+            "a folder of cases ({}), no case itself; name one of them, such as {}",
             cases.len(),
             first.display()
         ),

@@ -13,7 +13,8 @@ pub fn scene(
     settings: &SweepSettings,
 ) -> Result<(), CliError> {
     if let Some(text) = cuts {
-        scene.cuts = Cuts::try_from(text.to_owned()).map_err(|remedy| CliError::Argument {
+        let chosen = Cuts::try_from(text.to_owned()).and_then(|cuts| scene.with_cuts(cuts));
+        scene = chosen.map_err(|remedy| CliError::Argument {
             key: "--cuts",
             value: text.to_owned(),
             remedy,

@@ -11,8 +11,9 @@ use topo_lab::{Estimate, Event, FailedCase};
 pub fn tell_taken(estimate: &Estimate, seconds: f64) {
     if estimate.n_cases > 0 {
         say!(
-            "{} cases in {}; estimated {}",
+            "{} case{} in {}; estimated {}",
             estimate.n_cases,
+            if estimate.n_cases == 1 { "" } else { "s" },
             duration(seconds),
             duration(estimate.wall_seconds)
         );

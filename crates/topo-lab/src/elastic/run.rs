@@ -199,7 +199,7 @@ fn failure(charged: &ChargedRod, runs: &[FollowedCut]) -> Option<String> {
     runs.iter().find_map(|run| {
         let stop = &run.discharge.record.report.stop;
         let at = run.discharge.at;
-        (!stop.is_success()).then(|| format!("discharge after the cut at {at} stopped: {stop}"))
+        (!stop.is_success()).then(|| format!("discharge after the cut at {at:.4} stopped: {stop}"))
     })
 }
 

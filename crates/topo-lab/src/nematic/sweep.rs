@@ -247,7 +247,7 @@ mod tests {
         };
         for damaged in ["charge-", "discharge-", "snapshots-"] {
             stop_in("discharging: step 4");
-            let case = torn.path().join(&scene.folder).join(&calm.rows[1].case);
+            let case = torn.path().join(&scene.folder).join(&calm.rows[0].case);
             let mut n_found = 0;
             for entry in std::fs::read_dir(&case).unwrap() {
                 let path = entry.unwrap().path();

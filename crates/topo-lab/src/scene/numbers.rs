@@ -41,11 +41,22 @@ impl Numbers {
             Self::One(x) => vec![*x],
             Self::List(list) => list.clone(),
             Self::Range { from, n: 1, .. } => vec![*from],
-            // halves and quarters come out exactly
-            Self::Range { from, to, n } => (0..*n)
-                .map(|k| from + (to - from) * k as f64 / (*n - 1) as f64)
-                .collect(),
+            Self::Range { from, to, n } => {
+                let scale = from.abs().max(to.abs());
+                let at = |k: usize| from + (to - from) * k as f64 / (*n - 1) as f64;
+                (0..*n).map(|k| rounded(at(k), scale)).collect()
+            }
         }
+    }
+}
+
+/// A number as short as rounding has left it: 0.3 for 0.30000000000000004, of numbers up to `scale`.
+fn rounded(x: f64, scale: f64) -> f64 {
+    let short = format!("{x:.12e}").parse().unwrap_or(x);
+    if (short - x).abs() <= 4.0 * f64::EPSILON * scale {
+        short
+    } else {
+        x
     }
 }
 
@@ -115,4 +126,22 @@ pub(crate) fn repeated(document: &Document<'_>, key: &str, value: impl Display) 
         value,
         "it is there twice, in a list or as two numbers of a range that coincide: give each value once",
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ranges_of_round_numbers_are_round() {
+        let range = |from, to, n| Numbers::Range { from, to, n }.values();
+        assert_eq!(range(0.1, 0.4, 4), [0.1, 0.2, 0.3, 0.4]);
+        assert_eq!(
+            range(-0.01, 0.01, 9)[..4],
+            [-0.01, -0.0075, -0.005, -0.0025]
+        );
+        assert_eq!(range(-0.01, 0.01, 9)[4].to_bits(), 0);
+        // what is no short number stays as it is
+        assert_eq!(range(0.0, 1.0, 4)[1], 1.0 / 3.0);
+    }
 }

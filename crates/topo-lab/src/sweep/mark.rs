@@ -1,6 +1,6 @@
 //! Whose results a folder holds: the scene written out beside its table, and the refusal of another one.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use serde_json::Value;
@@ -16,6 +16,41 @@ const SCENE: &str = "scene.toml";
 const MOST_KEYS: usize = 4;
 /// Longest value that a refusal shows.
 const LONGEST: usize = 60;
+
+/// Gives cases of this scene that an earlier program finished under other names those that they have now.
+pub(super) fn rename(
+    folder: &Path,
+    known: &[(String, String)],
+    version: u32,
+) -> Result<(), LabError> {
+    let Ok(entries) = std::fs::read_dir(folder) else {
+        return Ok(());
+    };
+    let names: BTreeMap<&str, &str> = known
+        .iter()
+        .map(|(n, f)| (f.as_str(), n.as_str()))
+        .collect();
+    for entry in entries.flatten() {
+        let Some(Left::Case {
+            fingerprint,
+            results,
+        }) = left_of(&entry.path())
+        else {
+            continue;
+        };
+        let name = names
+            .get(fingerprint.as_str())
+            .filter(|_| results == Some(version));
+        let Some(place) = name.map(|name| folder.join(name)).filter(|p| !p.exists()) else {
+            continue;
+        };
+        std::fs::rename(entry.path(), &place).map_err(|source| LabError::Output {
+            path: place,
+            source,
+        })?;
+    }
+    Ok(())
+}
 
 /// Refuses a folder with finished cases that are none of this scene's; `known` are names and fingerprints of its cases.
 ///
@@ -205,6 +240,13 @@ mod tests {
     #[test]
     fn results_of_an_earlier_program_are_recognised() {
         let dir = tempfile::tempdir().unwrap();
+        // the same cases under the names of then
+        case(dir.path(), "a", "1", 5);
+        case(dir.path(), "b_as_it_was_called", "2", 5);
+        assert!(refused(dir.path()).is_some());
+        rename(dir.path(), &known(), 5).unwrap();
+        assert!(dir.path().join("b/run.json").exists());
+        assert_eq!(refused(dir.path()), None);
         case(dir.path(), "a", "1", 5);
         case(dir.path(), "named_otherwise_then", "1", 4);
         let text = refused(dir.path()).unwrap();

@@ -25,7 +25,7 @@ pub(super) struct Plan<E: Experiment> {
 }
 
 impl<E: Experiment> Plan<E> {
-    /// Looks at what is there; nothing is written.
+    /// Looks at what is there; only names of an earlier program are changed.
     pub fn of(experiment: &E, settings: &SweepSettings) -> Result<Self, LabError> {
         let folder = settings.out.join(experiment.folder());
         let cases = experiment.cases()?;
@@ -33,6 +33,7 @@ impl<E: Experiment> Plan<E> {
         for case in &cases {
             known.push((experiment.name(case), experiment.fingerprint(case)?));
         }
+        mark::rename(&folder, &known, E::RESULTS)?;
         mark::check(&folder, &experiment.text(), &known, E::RESULTS)?;
         let mut found = Vec::with_capacity(cases.len());
         for (k, (name, fingerprint)) in known.iter().enumerate() {

@@ -213,7 +213,7 @@ fn folders_that_are_no_case_are_refused() {
     refusal(&["run.json", "damaged"]);
     // a file, and the folder above
     refusal_of(&mark, &["no such folder"]);
-    refusal_of(dir.path(), &["1 cases", "such as", "case"]);
+    refusal_of(dir.path(), &["cases (1)", "such as", "case"]);
     say("{\"schema\":\"other/1\"}");
     refusal(&["other/1"]);
     for schema in ["topo-elastic-case/1", "topo-nematic-case/1"] {

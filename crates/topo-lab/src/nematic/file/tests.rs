@@ -409,6 +409,10 @@ fn nothing_asked_for_is_ignored_and_nothing_absurd_is_begun() {
             "[nematic]\nmaterial = { a = -0.1 }\n[material]\nb = -2",
             ["line 2: nematic.material", "keep one"],
         ),
+        (
+            "accuracy = 0.1\n[nematic]\nq = 1\n[flow]\nboundary_residual = 0",
+            ["line 5: flow.boundary_residual = 0", "above zero"],
+        ),
     ] {
         let told = parse(text).expect_err(text).to_string();
         for word in words {

@@ -24,6 +24,7 @@ fn row(q: u32) -> NematicRow {
     let buckled = q >= ONSET;
     let pick = |a: f64, b: f64| if buckled { b } else { a };
     NematicRow {
+        case: format!("q{q:02}"),
         radius: RADIUS,
         spacing: 1.5,
         q,
