@@ -2,9 +2,10 @@
 
 use std::path::Path;
 
-use topo_analysis::{ElasticScene, SweepRow, SweepSettings, read_table, run_sweep};
+use topo_analysis::{SweepRow, read_table};
 use topo_core::{Interrupt, Polyline};
 use topo_knots::{KnotTable, closed_braid};
+use topo_lab::{ElasticScene, SweepSettings, run_sweep};
 use topo_rod::{Accuracy, CutSite, Guards, RodBattery, RodError, RodParameters};
 use topo_tests::curves::{closed, ring, trefoil};
 

@@ -6,12 +6,12 @@ use std::path::Path;
 use nalgebra::{Rotation3, Vector3};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use topo_analysis::{ElasticScene, NematicScene};
 use topo_core::{FileError, Interrupt, Polyline, checkpoint_bytes, parse_checkpoint};
 use topo_knots::{
     CurveFormat, Handedness, KnotTable, KnotType, V, closed_braid, curve_text, identify,
     parse_braid, parse_components,
 };
+use topo_lab::{ElasticScene, NematicScene};
 use topo_nematic::{
     ChargeSettings, NematicAccuracy, NematicBattery, NematicError, NematicParameters, RunHooks,
 };
