@@ -8,9 +8,10 @@ use crate::interrupt;
 use crate::progress::Progress;
 use std::path::Path;
 use std::time::Instant;
+use topo_core::Interrupt;
 use topo_knots::KnotTable;
 use topo_view::data::{NematicSweep, Sweep};
-use topo_view::figures::{self, Context, Done};
+use topo_view::figures::{self, Context, Done, Figure};
 use topo_view::movies::{self, Movie};
 use topo_view::provenance::{self, Provenance};
 use topo_view::{gallery, reproduction, scenes};
@@ -46,65 +47,12 @@ pub fn run(args: &FiguresArgs, workspace: Option<&Path>) -> Result<(), CliError>
         return failures.into_result();
     }
 
-    let context = Context {
-        results,
-        quality: args.quality,
-        detail: 1.0,
-        struts: args.struts,
+    let mut drawn = Drawn {
+        figures: draw_figures(args, &chosen, &interrupt)?,
+        movies: draw_movies(args, &movies, &interrupt, &mut record)?,
     };
-    let progress = Progress::start("drawing", chosen.len());
-    let mut done: Vec<Done> = Vec::new();
-    for &figure in &chosen {
-        interrupt::check(&interrupt)?;
-        done.push(figures::draw(figure, &context)?);
-        progress.done(figure.name);
-    }
-    progress.finish();
-    let n_drawn = done.len();
-    let mut shown_movies: Vec<(Movie, String)> = Vec::new();
-    for &movie in &movies {
-        let progress = Progress::start(movie.name, movies::N_FRAMES);
-        let start = Instant::now();
-        let stage = movies::Stage {
-            results,
-            quality: args.quality,
-            interrupt: &interrupt,
-            drawn: &|| progress.done("frame"),
-        };
-        let finding = movies::draw(movie, &stage)?;
-        progress.finish();
-        say!("{}: {finding}", movie.name);
-        record
-            .wall_seconds
-            .insert(movie.name.to_owned(), start.elapsed().as_secs_f64());
-        shown_movies.push((movie, finding));
-    }
-    let mut earlier = provenance::earlier_findings(results);
-    // The gallery keeps what earlier commands drew.
-    for figure in figures::ALL {
-        if done.iter().all(|d| d.figure.name != figure.name)
-            && let Some(finding) = earlier.remove(figure.name)
-        {
-            done.extend(figures::kept(figure, results, finding));
-        }
-    }
-    for movie in movies::ALL {
-        let there = results.join(format!("figures/{}.png", movie.name)).exists();
-        if shown_movies.iter().all(|(m, _)| m.name != movie.name)
-            && let Some(finding) = earlier.remove(movie.name).filter(|_| there)
-        {
-            shown_movies.push((movie, finding));
-        }
-    }
-    let place = |d: &Done| figures::ALL.iter().position(|f| f.name == d.figure.name);
-    let mut shown: Vec<&Done> = done.iter().collect();
-    shown.sort_by_key(|d| place(d));
-    record.drew(&done);
-    for (movie, finding) in &shown_movies {
-        record
-            .findings
-            .insert(movie.name.to_owned(), finding.clone());
-    }
+    let n_drawn = drawn.figures.len();
+    drawn.keep_earlier(results);
     if order.elastic {
         for case in &Sweep::read(results)?.cases {
             case.cuts.iter().for_each(|c| record.warn(&c.warnings));
@@ -115,21 +63,112 @@ pub fn run(args: &FiguresArgs, workspace: Option<&Path>) -> Result<(), CliError>
         let rows = sweep.rows.iter().chain(&sweep.flowing);
         rows.for_each(|r| record.warn(&r.warnings));
     }
-    record.write(results)?;
-    let claims = reproduction::findings(results)?;
-    reproduction::write(results, args.quality, &claims)?;
-    scenes::write(results, args.quality)?;
-    let page = gallery::Page {
-        done: &shown,
-        movies: &shown_movies,
-        claims: &claims,
-        quality: args.quality,
-        provenance: &record,
-    };
-    gallery::write(results, &page)?;
-    for d in &done[..n_drawn] {
+    drawn.write_pages(args, &mut record)?;
+    for d in &drawn.figures[..n_drawn] {
         say!("{}: {}", d.figure.name, d.finding);
     }
     say!("gallery: {}", results.join("index.html").display());
     failures.into_result()
+}
+
+fn draw_figures(
+    args: &FiguresArgs,
+    chosen: &[Figure],
+    interrupt: &Interrupt,
+) -> Result<Vec<Done>, CliError> {
+    let context = Context {
+        results: &args.work.out,
+        quality: args.quality,
+        detail: 1.0,
+        struts: args.struts,
+    };
+    let progress = Progress::start("drawing", chosen.len());
+    let mut done = Vec::new();
+    for &figure in chosen {
+        interrupt::check(interrupt)?;
+        done.push(figures::draw(figure, &context)?);
+        progress.done(figure.name);
+    }
+    progress.finish();
+    Ok(done)
+}
+
+/// Movies with what each shows.
+fn draw_movies(
+    args: &FiguresArgs,
+    chosen: &[Movie],
+    interrupt: &Interrupt,
+    record: &mut Provenance,
+) -> Result<Vec<(Movie, String)>, CliError> {
+    let mut done = Vec::new();
+    for &movie in chosen {
+        let progress = Progress::start(movie.name, movies::N_FRAMES);
+        let start = Instant::now();
+        let stage = movies::Stage {
+            results: &args.work.out,
+            quality: args.quality,
+            interrupt,
+            drawn: &|| progress.done("frame"),
+        };
+        let finding = movies::draw(movie, &stage)?;
+        progress.finish();
+        say!("{}: {finding}", movie.name);
+        let seconds = start.elapsed().as_secs_f64();
+        record.wall_seconds.insert(movie.name.to_owned(), seconds);
+        done.push((movie, finding));
+    }
+    Ok(done)
+}
+
+/// What the gallery shows.
+struct Drawn {
+    figures: Vec<Done>,
+    movies: Vec<(Movie, String)>,
+}
+
+impl Drawn {
+    /// Adds what earlier commands drew.
+    fn keep_earlier(&mut self, results: &Path) {
+        let mut earlier = provenance::earlier_findings(results);
+        for figure in figures::ALL {
+            if self.figures.iter().all(|d| d.figure.name != figure.name)
+                && let Some(finding) = earlier.remove(figure.name)
+            {
+                self.figures.extend(figures::kept(figure, results, finding));
+            }
+        }
+        for movie in movies::ALL {
+            let there = results.join(format!("figures/{}.png", movie.name)).exists();
+            if self.movies.iter().all(|(m, _)| m.name != movie.name)
+                && let Some(finding) = earlier.remove(movie.name).filter(|_| there)
+            {
+                self.movies.push((movie, finding));
+            }
+        }
+    }
+
+    /// Writes provenance, report, scenes and gallery.
+    fn write_pages(&self, args: &FiguresArgs, record: &mut Provenance) -> Result<(), CliError> {
+        let results = args.work.out.as_path();
+        let place = |d: &Done| figures::ALL.iter().position(|f| f.name == d.figure.name);
+        let mut shown: Vec<&Done> = self.figures.iter().collect();
+        shown.sort_by_key(|d| place(d));
+        record.drew(&self.figures);
+        for (movie, finding) in &self.movies {
+            let name = movie.name.to_owned();
+            record.findings.insert(name, finding.clone());
+        }
+        record.write(results)?;
+        let claims = reproduction::findings(results)?;
+        reproduction::write(results, args.quality, &claims)?;
+        scenes::write(results, args.quality)?;
+        let page = gallery::Page {
+            done: &shown,
+            movies: &self.movies,
+            claims: &claims,
+            quality: args.quality,
+            provenance: record,
+        };
+        Ok(gallery::write(results, &page)?)
+    }
 }
