@@ -47,9 +47,9 @@ pub enum Command {
     #[command(after_help = "Examples:
   topo run scenes/trefoil.toml
   topo run scenes/trefoil.toml --cuts all:8 --out my-results
-  topo run scenes/elastic-quick.toml --accuracy 0.02    settings for an error of 2 %, and what it came to
+  topo run scenes/elastic-quick.toml --accuracy 0.02    settings for 2 %, and the error it has
   topo run scenes/nematic-desk.toml --budget \"10 min\"
-  topo run scenes/nematic-quick.toml --fields --out fields    with files for `topo export`")]
+  topo run scenes/nematic-quick.toml --fields --out fields    for `topo export`")]
     Run(RunArgs),
     /// Measure the error of discharge times: 35 fixed cases against finer runs of the same cuts, or the exact discharge where that is known.
     #[command(after_help = "Examples:
