@@ -125,8 +125,7 @@ fn val_disturbed_tight_curves_are_named() {
     assert_eq!(check_disturbed(5, 50), (250, 250));
 }
 
-/// The same for the whole table. Diagrams of disturbed knots of seven or eight crossings often keep more crossings than the table
-/// is complete for: their names are right, but not proved.
+/// The same for the whole table.
 #[test]
 #[ignore = "long: 1 minute"]
 fn long_a_thousand_disturbed_tight_curves_are_named() {
