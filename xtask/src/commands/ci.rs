@@ -35,9 +35,7 @@ pub fn run() -> Result<(), CliError> {
         "package",
         cargo(&["package", "--workspace", "--no-verify", "--quiet"]),
     )?;
-    for (name, command) in packages::checks(&target())? {
-        check(&name, command)?;
-    }
+    check("packages build", packages::check(&target())?)?;
     let report = test::all(false)?;
     if !report.ok {
         failed.push("tests".to_owned());
