@@ -57,7 +57,7 @@ fn page_adds_nine_forty_two() {
     );
     assert!(folder.path().join("my-results/my-scene/sweep.csv").exists());
     // The length, within the bar of the draft quality.
-    let record = std::fs::read_to_string(folder.path().join("my-results/9_42.json")).unwrap();
+    let record = std::fs::read_to_string(folder.path().join("my-results/knots/9_42.json")).unwrap();
     let record: serde_json::Value = serde_json::from_str(&record).unwrap();
     let excess = record["excess_percent"].as_f64().unwrap();
     println!("excess {excess:.3} %");
