@@ -1,7 +1,7 @@
 //! Whose results a folder holds: the scene written out beside its table, and the refusal of another one.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 use topo_core::write_atomic_bytes;
@@ -17,45 +17,11 @@ const MOST_KEYS: usize = 4;
 /// Longest value that a refusal shows.
 const LONGEST: usize = 60;
 
-/// Gives cases of this scene that an earlier program finished under other names those that they have now.
-pub(super) fn rename(
-    folder: &Path,
-    known: &[(String, String)],
-    version: u32,
-) -> Result<(), LabError> {
-    let Ok(entries) = std::fs::read_dir(folder) else {
-        return Ok(());
-    };
-    let names: BTreeMap<&str, &str> = known
-        .iter()
-        .map(|(n, f)| (f.as_str(), n.as_str()))
-        .collect();
-    for entry in entries.flatten() {
-        let Some(Left::Case {
-            fingerprint,
-            results,
-        }) = left_of(&entry.path())
-        else {
-            continue;
-        };
-        let name = names
-            .get(fingerprint.as_str())
-            .filter(|_| results == Some(version));
-        let Some(place) = name.map(|name| folder.join(name)).filter(|p| !p.exists()) else {
-            continue;
-        };
-        std::fs::rename(entry.path(), &place).map_err(|source| LabError::Output {
-            path: place,
-            source,
-        })?;
-    }
-    Ok(())
-}
-
 /// Refuses a folder with finished cases that are none of this scene's; `known` are names and fingerprints of its cases.
 ///
 /// More cases may be added to a scene: what is finished stays. Cases of its own that another results version computed are no
-/// reason either, they are computed again.
+/// reason either, they are computed again. Cases that an earlier program finished under other names get those of now, once nothing is
+/// refused.
 pub(super) fn check(
     folder: &Path,
     text: &str,
@@ -70,7 +36,9 @@ pub(super) fn check(
         .map(|(n, f)| (n.as_str(), f.as_str()))
         .collect();
     let names: BTreeSet<&str> = known.iter().map(|(n, _)| n.as_str()).collect();
+    let names_of: BTreeMap<&str, &str> = own.iter().map(|(n, f)| (*f, *n)).collect();
     let mut foreign: Vec<(String, Left)> = Vec::new();
+    let mut renamed: Vec<(PathBuf, PathBuf)> = Vec::new();
     for entry in entries.flatten() {
         let name = entry.file_name().to_string_lossy().into_owned();
         let Some(left) = left_of(&entry.path()) else {
@@ -83,12 +51,25 @@ pub(super) fn check(
             }
             Left::Case { fingerprint, .. } => own.contains(&(name.as_str(), fingerprint.as_str())),
         };
-        if !is_own {
-            foreign.push((name, left));
+        if is_own {
+            continue;
+        }
+        let name_now = match &left {
+            Left::Case {
+                fingerprint,
+                results,
+            } if *results == Some(version) => names_of.get(fingerprint.as_str()),
+            _ => None,
+        };
+        match name_now.map(|n| folder.join(n)).filter(|p| !p.exists()) {
+            Some(place) => renamed.push((entry.path(), place)),
+            None => foreign.push((name, left)),
         }
     }
     if foreign.is_empty() {
-        return Ok(());
+        return renamed.into_iter().try_for_each(|(from, to)| {
+            std::fs::rename(from, &to).map_err(|source| LabError::Output { path: to, source })
+        });
     }
     foreign.sort_by(|a, b| a.0.cmp(&b.0));
     Err(LabError::OtherScene {
@@ -243,10 +224,9 @@ mod tests {
         // the same cases under the names of then
         case(dir.path(), "a", "1", 5);
         case(dir.path(), "b_as_it_was_called", "2", 5);
-        assert!(refused(dir.path()).is_some());
-        rename(dir.path(), &known(), 5).unwrap();
-        assert!(dir.path().join("b/run.json").exists());
         assert_eq!(refused(dir.path()), None);
+        assert!(dir.path().join("b/run.json").exists());
+        assert!(!dir.path().join("b_as_it_was_called").exists());
         case(dir.path(), "a", "1", 5);
         case(dir.path(), "named_otherwise_then", "1", 4);
         let text = refused(dir.path()).unwrap();
