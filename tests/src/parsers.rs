@@ -9,10 +9,7 @@ use std::sync::OnceLock;
 use nalgebra::Vector3;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
-use topo_analysis::{
-    ElasticScene, FieldSnapshot, KnotRow, NematicRow, NematicScene, Scene, SweepRow, parse_table,
-    table_bytes,
-};
+use topo_analysis::{KnotRow, NematicRow, SweepRow, parse_table, table_bytes};
 use topo_core::{
     Counters, DischargeCurve, Interrupt, Ledger, Polyline, RejectionCounts, Snapshot, StepControl,
     checkpoint_bytes, parse_checkpoint,
@@ -21,6 +18,7 @@ use topo_knots::{
     CurveFile, CurveFormat, FrameChoice, Invariants, KnotEntry, KnotError, TightKnot, closed_braid,
     curve_text, n_components, parse_braid, parse_components,
 };
+use topo_lab::{ElasticScene, FieldSnapshot, NematicScene, Scene};
 use topo_nematic::{
     ChargeSettings, DischargeSettings, FlowParameters, NematicAccuracy, NematicBattery,
     NematicError, NematicParameters, RunHooks, SwitchSettings, SwitchTarget, SwitchedNematic,

@@ -17,8 +17,8 @@ use std::path::{Path, PathBuf};
 
 /// Versions of results as the code has them.
 const VERSIONS: [(&str, u32); 3] = [
-    ("rods", topo_analysis::RESULTS_VERSION),
-    ("nematics", topo_analysis::NEMATIC_RESULTS_VERSION),
+    ("rods", topo_lab::RESULTS_VERSION),
+    ("nematics", topo_lab::NEMATIC_RESULTS_VERSION),
     ("knots", topo_knots::METHOD_VERSION),
 ];
 /// What a page may name instead of versions: the table depends on none.

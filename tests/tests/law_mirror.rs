@@ -2,9 +2,10 @@
 
 use std::path::Path;
 
-use topo_analysis::{ElasticScene, SweepRow, SweepSettings, read_table, run_sweep};
+use topo_analysis::{SweepRow, read_table};
 use topo_core::{Interrupt, Polyline};
 use topo_knots::{KnotTable, closed_braid};
+use topo_lab::{ElasticScene, SweepSettings, run_sweep};
 use topo_rod::{Accuracy, CutSite, Guards, RodBattery, RodError, RodParameters};
 use topo_tests::curves::{closed, ring, trefoil};
 
@@ -26,12 +27,12 @@ struct Moment {
     knot_probability: Option<f64>,
 }
 
-fn sweep(knots: &str, twist: f64, table: &KnotTable, out: &Path) -> Vec<SweepRow> {
+fn sweep(knot: &str, twist: f64, table: &KnotTable, out: &Path) -> Vec<SweepRow> {
     let text = format!(
-        "[rod]\nknot = [{knots}]\ntwist = {twist:.1}\n[rod.contact]\n[rod.friction]\n[charge]\nduration = 0.3\n\
+        "[rod]\nknot = {knot:?}\ntwist = {twist:.1}\n[rod.contact]\n[rod.friction]\n[charge]\nduration = 0.3\n\
          [discharge]\nuntil_released = 0.97\ncuts = \"near-ties\"\n[accuracy]\nedges = 80\n"
     );
-    let mut scene = ElasticScene::parse(&text, Path::new("mirror.toml")).unwrap();
+    let mut scene = ElasticScene::parse(&text, Path::new(knot)).unwrap();
     (scene.tighten.n_variants, scene.tighten.n_kicks) = (0, 0);
     let settings = SweepSettings {
         jobs: 1,
@@ -41,12 +42,9 @@ fn sweep(knots: &str, twist: f64, table: &KnotTable, out: &Path) -> Vec<SweepRow
 }
 
 /// Rows of the mirror image as those of the knot itself must be.
-fn mirrored(row: &SweepRow, name: &str) -> SweepRow {
+fn mirrored(row: &SweepRow, name: &str, case: &str) -> SweepRow {
     SweepRow {
-        case: row
-            .case
-            .replace(name, &format!("m{name}"))
-            .replace("twist+", "twist-"),
+        case: case.to_owned(),
         knot: format!("m{name}"),
         twist: -row.twist,
         writhe: -row.writhe,
@@ -73,8 +71,8 @@ fn law_mirrored_knots_give_mirrored_runs() {
     let table = KnotTable::builtin().with_folder(own.path()).unwrap();
     let out = tempfile::tempdir().unwrap();
     for name in ["3_1", "6_2", "6_3", "tre"] {
-        let knot = sweep(&format!("{name:?}"), 1.0, &table, out.path());
-        let image = sweep(&format!("\"m{name}\""), -1.0, &table, out.path());
+        let knot = sweep(name, 1.0, &table, out.path());
+        let image = sweep(&format!("m{name}"), -1.0, &table, out.path());
         assert!(!knot.is_empty() && knot[0].t90.is_some());
         for (knot, image) in knot.iter().zip(&image) {
             println!(
@@ -82,7 +80,7 @@ fn law_mirrored_knots_give_mirrored_runs() {
                 knot.t90, image.t90, image.warnings
             );
             assert_eq!(
-                mirrored(knot, name),
+                mirrored(knot, name, &image.case),
                 SweepRow {
                     cpu_seconds: 0.0,
                     ..image.clone()
@@ -91,7 +89,7 @@ fn law_mirrored_knots_give_mirrored_runs() {
             assert!(!image.warnings.contains("tied"), "{}", image.warnings);
         }
         assert_eq!(knot.len(), image.len());
-        let folder = |row: &SweepRow| out.path().join("elastic").join(&row.case);
+        let folder = |row: &SweepRow| out.path().join(&row.knot).join(&row.case);
         let (ours, theirs) = (folder(&knot[0]), folder(&image[0]));
         for file in ["charged.csv", "snapshots.csv"] {
             let read = |folder: &Path| read_table::<Vertex>(&folder.join(file)).unwrap();

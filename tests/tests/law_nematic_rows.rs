@@ -3,8 +3,9 @@
 
 use std::path::Path;
 
-use topo_analysis::{NematicRow, NematicScene, SweepSettings, run_nematic_sweep};
+use topo_analysis::NematicRow;
 use topo_core::{DischargeCurve, Interrupt};
+use topo_lab::{NematicScene, SweepSettings, run_nematic_sweep};
 use topo_nematic::{DischargeSettings, NematicBattery, RunHooks};
 
 const SCENE: &str = r#"

@@ -4,8 +4,9 @@
 
 use std::path::Path;
 
-use topo_analysis::{DischargeTimes, NEMATIC_SHARES, NematicRow, NematicScene, Preset};
+use topo_analysis::{DischargeTimes, NEMATIC_SHARES, NematicRow};
 use topo_core::Interrupt;
+use topo_lab::{NematicScene, Preset};
 use topo_nematic::{
     Anchoring, Boundary, ChargeSettings, DischargeSettings, Drive, EnergyParts, FlowCoupling,
     FlowParameters, FlowSolver, FreeSurface, Material, NematicAccuracy, NematicBattery,

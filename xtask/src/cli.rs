@@ -1,56 +1,48 @@
 //! The command line.
 
-use crate::figures::Quality;
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand};
 use std::path::PathBuf;
-use topo_analysis::Shard;
+use topo_cli::SystemsArgs;
+use topo_view::Quality;
 
-mod count;
-mod knot;
-
-pub use knot::{IdentifyArgs, KnotArgs, KnotCommand, KnotQuality, TightenArgs};
+/// How this program is called.
+pub const NAME: &str = "cargo xtask";
 
 /// Commands of the topo workspace.
 #[derive(Debug, Parser)]
-#[command(name = "cargo xtask", bin_name = "cargo xtask", version, about)]
+#[command(name = NAME, bin_name = NAME, version, about)]
 pub struct Cli {
     /// What to do.
     #[command(subcommand)]
     pub command: Command,
 }
 
+/// The command line of this call; says what is wrong with it, or helps, and ends.
+pub fn parse() -> Cli {
+    let matches = renamed(Cli::command()).get_matches();
+    Cli::from_arg_matches(&matches).unwrap_or_else(|e| e.exit())
+}
+
+/// Examples of `topo`'s commands with the name of this program.
+fn renamed(command: clap::Command) -> clap::Command {
+    let help = command.get_after_help().map(ToString::to_string);
+    let command = match help {
+        Some(text) => {
+            let name = |before: &str, text: &str| {
+                text.replace(&format!("{before}topo "), &format!("{before}{NAME} "))
+            };
+            command.after_help(name("`", &name("| ", &name("  ", &text))))
+        }
+        None => command,
+    };
+    command.mut_subcommands(renamed)
+}
+
 /// What to do.
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// Compute what figures need and draw them, with a gallery page.
-    ///
-    /// Finished runs are reused; a change of quality or code recomputes what it touches.
-    #[command(after_help = "Examples:
-  cargo xtask figures                              all figures, draft quality
-  cargo xtask figures --only elastic-discharge     one of them
-  cargo xtask figures --quality standard --out results-standard
-  cargo xtask figures --quality paper --shard 2/4 --out part-2    every fourth case, to be merged
-  cargo xtask figures --quality paper --as-is      draw the cases that are finished")]
-    Figures(FiguresArgs),
-    /// Run the scene of a file: charge, cut, discharge.
-    #[command(after_help = "Examples:
-  cargo xtask run scenes/trefoil.toml
-  cargo xtask run scenes/trefoil.toml --cuts all:8 --out my-results
-  cargo xtask run scenes/elastic-quick.toml --accuracy 0.02    settings for an error of 2 %, and what it came to
-  cargo xtask run scenes/nematic-desk.toml --budget \"10 min\"
-  cargo xtask run scenes/nematic-quick.toml --fields --out fields    with files for `cargo xtask export`")]
-    Run(RunArgs),
-    /// Measure the error of discharge times: 35 fixed cases against finer runs of the same cuts, or the exact discharge where that is known.
-    #[command(after_help = "Examples:
-  cargo xtask accuracy                       the draft preset
-  cargo xtask accuracy --quality standard")]
-    Accuracy(AccuracyArgs),
-    /// Drive rods, nematics and the knot generator to their extremes: maps of what converges and why the rest stops.
-    #[command(after_help = "Examples:
-  cargo xtask stability                       all maps, draft: minutes
-  cargo xtask stability --only nematic        those of one system
-  cargo xtask stability --quality standard    every run to its very end")]
-    Stability(SystemsArgs),
+    #[command(flatten)]
+    Topo(topo_cli::Command),
     /// Charge colloids near the critical charge under other spacings, seeds, tolerances and boundary schemes: what decides where rings buckle.
     #[command(after_help = "Examples:
   cargo xtask buckling                          R = 15 and 25: half an hour on one processor
@@ -71,33 +63,16 @@ pub enum Command {
   cargo xtask cost                       small runs: about a minute
   cargo xtask cost --quality standard")]
     Cost(CostArgs),
-    /// Compare the numbers of two results folders to the byte, but for what tells how long they took.
-    #[command(after_help = "Example:
-  cargo xtask compare results results-again")]
-    Compare(CompareArgs),
     /// Compute on one thread, on two, and killed at random moments, and compare the numbers to the byte.
     #[command(after_help = "Examples:
   cargo xtask determinism                           all that the draft figures draw: three times some minutes
   cargo xtask determinism scenes/elastic-quick.toml    a scene instead")]
     Determinism(DeterminismArgs),
-    /// Write the shapes and fields of a case for ParaView, PyVista, numpy or nemaktis.
-    ///
-    /// A fibre becomes a line with arc length, tangent, curvature, twist, stretch and energy density, once charged and over
-    /// its discharge; a colloid becomes its defect lines, the particle's surface, the plane through its centre and, where
-    /// the scene was run with --fields, Q, director, order and velocity in all of the cell.
-    #[command(after_help = "Examples:
-  cargo xtask export results/elastic/3_1_twist+0.00_shrunk_n200
-  cargo xtask export results/nematic/q04_r15_h1.5_cut-link_f64_flow-on --format vtk --to seen
-  cargo xtask run scenes/nematic-quick.toml --fields --out fields
-  cargo xtask export fields/nematic/q02_r15_h1.5_cut-link_f64_flow-off --format nemaktis")]
-    Export(ExportArgs),
     /// Feed every parser with made-up files: needs cargo-fuzz.
     #[command(after_help = "Examples:
   cargo xtask fuzz                        ten minutes for each parser
   cargo xtask fuzz --minutes 60 vect xyz  an hour for each of two")]
     Fuzz(FuzzArgs),
-    /// The knot generator: tighten a knot, name a curve, look at the table.
-    Knot(KnotArgs),
     /// Run every test, doc test and example of the workspace.
     #[command(after_help = "Examples:
   cargo xtask test           everything but the long tests
@@ -112,89 +87,37 @@ pub enum Command {
     Bench(BenchArgs),
 }
 
-/// Options of `figures`.
+/// Options of `buckling`.
 #[derive(Debug, Args)]
-pub struct FiguresArgs {
-    /// Draw only this figure; may be given several times.
-    #[arg(long, value_name = "NAME")]
-    pub only: Vec<String>,
-    /// How much to compute.
-    #[arg(long, value_enum, default_value_t = Quality::Draft)]
-    pub quality: Quality,
-    /// Compute part I of N only and draw nothing; each part may run anywhere.
-    #[arg(long, value_name = "I/N")]
-    pub shard: Option<Shard>,
-    /// Compute nothing: draw what the folder holds of a sweep that is not finished.
-    #[arg(long, conflicts_with_all = ["shard", "fresh"])]
-    pub as_is: bool,
-    /// Draw the tight knots of `knots-table` as thin tubes with their struts.
-    #[arg(long)]
-    pub struts: bool,
-    /// Folder with knots of your own, one TOML file each, shown in `knots-table` besides the built-in ones.
-    #[arg(long, value_name = "DIR")]
-    pub knots: Option<PathBuf>,
+pub struct BucklingArgs {
     #[command(flatten)]
-    pub work: WorkArgs,
+    pub measured: topo_cli::BucklingArgs,
+    /// Put the tables into docs/nematic-model.md.
+    #[arg(long)]
+    pub record: bool,
 }
 
-/// Options of `accuracy`.
+/// Options of `cost`.
 #[derive(Debug, Args)]
-pub struct AccuracyArgs {
-    /// Which preset is measured.
-    #[arg(long, value_enum, default_value_t = Quality::Draft)]
-    pub quality: Quality,
+pub struct CostArgs {
     #[command(flatten)]
-    pub work: WorkArgs,
+    pub measured: topo_cli::CostArgs,
+    /// Put the table into docs/cost.md.
+    #[arg(long)]
+    pub record: bool,
 }
 
-/// Options of `run`.
+/// Options of `tradeoff`.
 #[derive(Debug, Args)]
-pub struct RunArgs {
-    /// Scene in TOML.
-    pub scene: PathBuf,
-    /// Where to cut: `argmax`, `near-ties` or `all:K`; instead of the scene's own.
-    #[arg(long, value_name = "CUTS")]
-    pub cuts: Option<String>,
-    /// Largest relative error of the discharge times (t99 of a rod, t99.9 of a colloid): picks the settings, and estimates the
-    /// error of each result.
-    #[arg(
-        long,
-        value_name = "ERROR",
-        conflicts_with = "budget",
-        allow_negative_numbers = true
-    )]
-    pub accuracy: Option<f64>,
-    /// Time that the scene may take, such as "10 min": picks the most accurate settings for it.
-    #[arg(long, value_name = "TIME")]
-    pub budget: Option<String>,
-    /// Keep the whole nematic field at each time looked at, for `export` (13 files a case; 3 MB each at R = 15).
-    #[arg(long)]
-    pub fields: bool,
-    /// Compute part I of N only; each part may run anywhere.
-    #[arg(long, value_name = "I/N")]
-    pub shard: Option<Shard>,
-    /// Seconds between checkpoints inside a nematic case.
-    #[arg(long, value_name = "SECONDS", default_value_t = 25.0)]
-    pub checkpoint: f64,
-    /// Folder with knots of your own, one TOML file each, besides the built-in ones.
-    #[arg(long, value_name = "DIR")]
-    pub knots: Option<PathBuf>,
+pub struct TradeoffArgs {
     #[command(flatten)]
-    pub work: WorkArgs,
-}
-
-/// Options that every computation has.
-#[derive(Debug, Args)]
-pub struct WorkArgs {
-    /// Folder of the results.
-    #[arg(long, value_name = "DIR", default_value = "results")]
-    pub out: PathBuf,
-    /// Number of threads; all processors when left out.
-    #[arg(long, value_name = "N", value_parser = count::from(1, count::MOST_JOBS))]
-    pub jobs: Option<usize>,
-    /// Compute everything anew.
+    pub systems: SystemsArgs,
+    /// Run the settings of scenes by wish on another set of cases: `factor` (which scales their estimates of the error) or `check` (how well these hold).
+    #[arg(long, value_name = "SET", value_parser = ["factor", "check"], conflicts_with = "quality")]
+    pub set: Option<String>,
+    /// Keep what was measured: the table from which scenes with `accuracy` or `budget` take their settings (with --quality standard), the factor of their estimates (with --set factor), and the tables of docs/tradeoff.md.
     #[arg(long)]
-    pub fresh: bool,
+    pub record: bool,
 }
 
 /// Options of `determinism`.
@@ -214,81 +137,6 @@ pub struct DeterminismArgs {
     /// Folder of the results.
     #[arg(long, value_name = "DIR", default_value = "results")]
     pub out: PathBuf,
-}
-
-/// Options of `export`.
-#[derive(Debug, Args)]
-pub struct ExportArgs {
-    /// Folder of a case: the one that holds run.json.
-    pub case: PathBuf,
-    /// Where the files go; `export` inside the case's folder when left out.
-    #[arg(long, value_name = "DIR")]
-    pub to: Option<PathBuf>,
-    /// Which files.
-    #[arg(long, value_enum, default_value_t = ExportFormat::All)]
-    pub format: ExportFormat,
-    /// Micrometres that one correlation length stands for in the files for nemaktis.
-    #[arg(long, value_name = "UM", default_value_t = 0.006_63)]
-    pub micrometres: f64,
-}
-
-/// File formats of `export`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-pub enum ExportFormat {
-    /// VTK XML: .vtp, .vti, .vtu, with .pvd for time series.
-    Vtk,
-    /// One .npz a case, and one a field.
-    Npz,
-    /// .vti with the arrays n, Q and domain_mask, lengths in micrometres; needs fields.
-    Nemaktis,
-    /// All of them.
-    All,
-}
-
-/// Options of `stability` and `tradeoff`.
-#[derive(Debug, Args)]
-pub struct SystemsArgs {
-    /// Only this system (rod, nematic, knots); may be given several times.
-    #[arg(long, value_name = "SYSTEM", value_parser = ["rod", "nematic", "knots"])]
-    pub only: Vec<String>,
-    /// How much is run: draft or standard.
-    #[arg(long, value_enum, default_value_t = Quality::Draft, hide_possible_values = true)]
-    pub quality: Quality,
-    #[command(flatten)]
-    pub work: WorkArgs,
-}
-
-impl SystemsArgs {
-    /// Whether a system is among those asked for.
-    pub fn takes(&self, system: topo_analysis::System) -> bool {
-        self.only.is_empty() || self.only.iter().any(|name| name == system.name())
-    }
-}
-
-/// Options of `buckling`.
-#[derive(Debug, Args)]
-pub struct BucklingArgs {
-    /// Radius of the particle, in xi_N: 15, 25 or 52.5; may be given several times.
-    #[arg(long, value_name = "R", default_values_t = [15.0, 25.0])]
-    pub radius: Vec<f64>,
-    /// Put the tables into docs/nematic-model.md.
-    #[arg(long)]
-    pub record: bool,
-    #[command(flatten)]
-    pub work: WorkArgs,
-}
-
-/// Options of `tradeoff`.
-#[derive(Debug, Args)]
-pub struct TradeoffArgs {
-    #[command(flatten)]
-    pub systems: SystemsArgs,
-    /// Run the settings of scenes by wish on another set of cases: `factor` (which scales their estimates of the error) or `check` (how well these hold).
-    #[arg(long, value_name = "SET", value_parser = ["factor", "check"], conflicts_with = "quality")]
-    pub set: Option<String>,
-    /// Keep what was measured: the table from which scenes with `accuracy` or `budget` take their settings (with --quality standard), the factor of their estimates (with --set factor), and the tables of docs/tradeoff.md.
-    #[arg(long)]
-    pub record: bool,
 }
 
 /// Options of `fuzz`.
@@ -311,29 +159,6 @@ pub struct FuzzArgs {
     pub out: PathBuf,
 }
 
-/// Options of `cost`.
-#[derive(Debug, Args)]
-pub struct CostArgs {
-    /// How large the runs are: draft or standard.
-    #[arg(long, value_enum, default_value_t = Quality::Draft, hide_possible_values = true)]
-    pub quality: Quality,
-    /// Put the table into docs/cost.md.
-    #[arg(long)]
-    pub record: bool,
-    /// Folder of the results.
-    #[arg(long, value_name = "DIR", default_value = "results")]
-    pub out: PathBuf,
-}
-
-/// Options of `compare`.
-#[derive(Debug, Args)]
-pub struct CompareArgs {
-    /// A results folder.
-    pub first: PathBuf,
-    /// Another.
-    pub second: PathBuf,
-}
-
 /// Options of `test`.
 #[derive(Debug, Args)]
 pub struct TestArgs {
@@ -352,29 +177,42 @@ pub struct BenchArgs {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use clap::CommandFactory;
 
     #[test]
     fn the_command_line_is_consistent() {
-        Cli::command().debug_assert();
-        let cli = Cli::try_parse_from([
-            "xtask",
-            "figures",
-            "--only",
-            "knots-table",
-            "--quality",
-            "paper",
-            "--jobs",
-            "1",
-        ])
-        .unwrap();
-        let Command::Figures(f) = cli.command else {
-            panic!("not figures")
+        renamed(Cli::command()).debug_assert();
+    }
+
+    #[test]
+    fn examples_name_this_program() {
+        let help = |words: &[&str]| {
+            let words = [NAME].iter().chain(words).chain(&["--help"]);
+            let said = renamed(Cli::command()).try_get_matches_from(words);
+            said.unwrap_err().to_string()
         };
-        assert_eq!(
-            (f.only.len(), f.quality, f.work.jobs),
-            (1, Quality::Paper, Some(1))
+        let figures = help(&["figures"]);
+        assert!(
+            figures.contains("  cargo xtask figures --quality paper"),
+            "{figures}"
         );
-        assert!(Cli::try_parse_from(["xtask", "figures", "--quality", "best"]).is_err());
+        let identify = help(&["knot", "identify"]);
+        assert!(
+            identify.contains("| cargo xtask knot identify -"),
+            "{identify}"
+        );
+        assert!(!identify.contains(" topo "), "{identify}");
+        assert!(help(&["run"]).contains("`cargo xtask export`"));
+    }
+
+    #[test]
+    fn counts_out_of_range_are_refused_with_option_and_number() {
+        let parse = |number| Cli::try_parse_from(["xtask", "determinism", "--kills", number]);
+        assert!(parse("7").is_ok());
+        for number in ["1000000000000", "99999999999999999999999", "1.5", "many"] {
+            let error = parse(number).unwrap_err();
+            let said = error.to_string();
+            assert_eq!(error.exit_code(), 2);
+            assert!(said.contains("--kills") && said.contains(number), "{said}");
+        }
     }
 }

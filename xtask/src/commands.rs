@@ -1,45 +1,38 @@
 //! What each command does.
 
-mod accuracy;
 mod bench;
-mod buckling;
 mod cargo;
 mod ci;
-mod compare;
-mod cost;
 mod determinism;
-mod export;
-mod figures;
 mod fuzz;
-mod knot;
 mod packages;
 mod record;
-mod run;
-mod stability;
 mod test;
 mod tradeoff;
 
-use crate::cli::{Cli, Command, WorkArgs};
-use crate::error::XtaskError;
-use crate::figures::Quality;
-use crate::interrupt;
+use crate::cli::{Cli, Command};
+use crate::workspace::workspace;
+use record::record;
 use std::process::ExitCode;
-use topo_analysis::{Effort, SweepSettings};
+use topo_cli::CliError;
+use topo_cli::commands::{buckling, cost};
 
 /// Runs the command; only `knot identify` ends well in more ways than one.
-pub fn dispatch(cli: Cli) -> Result<ExitCode, XtaskError> {
+pub fn dispatch(cli: Cli) -> Result<ExitCode, CliError> {
     match cli.command {
-        Command::Knot(args) => return knot::run(&args),
-        Command::Figures(args) => figures::run(&args),
-        Command::Run(args) => run::run(&args),
-        Command::Accuracy(args) => accuracy::run(&args),
-        Command::Stability(args) => stability::run(&args),
-        Command::Buckling(args) => buckling::run(&args),
+        Command::Topo(command) => {
+            return topo_cli::commands::dispatch(command, Some(&workspace()));
+        }
+        Command::Buckling(args) => {
+            let text = buckling::run(&args.measured)?;
+            kept(args.record, "nematic-model.md", &text)
+        }
         Command::Tradeoff(args) => tradeoff::run(&args),
-        Command::Compare(args) => compare::run(&args),
-        Command::Cost(args) => cost::run(&args),
+        Command::Cost(args) => {
+            let text = cost::run(&args.measured)?;
+            kept(args.record, "cost.md", &text)
+        }
         Command::Determinism(args) => determinism::run(&args),
-        Command::Export(args) => export::run(&args),
         Command::Fuzz(args) => fuzz::run(&args),
         Command::Test(args) => test::run(&args),
         Command::Ci => ci::run(),
@@ -48,37 +41,7 @@ pub fn dispatch(cli: Cli) -> Result<ExitCode, XtaskError> {
     .map(|()| ExitCode::SUCCESS)
 }
 
-/// What the options of a computation ask for.
-fn settings(work: &WorkArgs) -> Result<SweepSettings, XtaskError> {
-    Ok(SweepSettings {
-        jobs: threads(work.jobs)?,
-        fresh: work.fresh,
-        interrupt: interrupt::install(),
-        ..SweepSettings::new(&work.out)
-    })
-}
-
-/// How much a command runs that knows no paper quality.
-fn effort(quality: Quality) -> Result<Effort, XtaskError> {
-    match quality {
-        Quality::Draft => Ok(Effort::Draft),
-        Quality::Standard => Ok(Effort::Standard),
-        Quality::Paper => Err(XtaskError::Argument {
-            key: "--quality",
-            value: "paper".to_owned(),
-            remedy: "this is made at draft or standard".to_owned(),
-        }),
-    }
-}
-
-/// Gives rayon `jobs` threads, or all processors, and returns the number (0 for all).
-fn threads(jobs: Option<usize>) -> Result<usize, XtaskError> {
-    let Some(n) = jobs else { return Ok(0) };
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(n);
-    pool.build_global().map_err(|e| XtaskError::Argument {
-        key: "--jobs",
-        value: n.to_string(),
-        remedy: e.to_string(),
-    })?;
-    Ok(n)
+/// Puts a table into a page of `docs`, if asked for.
+fn kept(is_asked: bool, page: &str, text: &str) -> Result<(), CliError> {
+    if is_asked { record(page, text) } else { Ok(()) }
 }

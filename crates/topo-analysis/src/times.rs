@@ -22,6 +22,9 @@ pub struct DischargeTimes {
 /// Shares that tables list for the elastic battery.
 pub const ELASTIC_SHARES: [f64; 4] = [0.5, 0.9, 0.95, 0.99];
 
+/// The same for the nematic battery.
+pub const NEMATIC_SHARES: [f64; 4] = [0.5, 0.9, 0.99, 0.999];
+
 impl DischargeTimes {
     /// First times at which the sum of `parts` of a curve has fallen by each share of `start`.
     ///

@@ -18,6 +18,7 @@ mod error;
 mod file;
 mod integrate;
 mod ledger;
+mod minimum;
 mod observe;
 mod simulation;
 mod snapshot;
@@ -42,6 +43,7 @@ pub use integrate::{
     Stepper, Trial, max_norm,
 };
 pub use ledger::{CompensatedSum, EnergyEvent, Ledger};
+pub use minimum::MinimumState;
 pub use observe::{Observer, Sample, Schedule, Scheduled};
 pub use simulation::{Interrupt, Simulation, StopCondition, StopReason};
 pub use snapshot::Snapshot;

@@ -36,7 +36,7 @@ pub use battery::charge::{ChargeSettings, ChargedNematic};
 pub use battery::discharge::{Discharge, DischargeSettings};
 pub use battery::final_state::{FinalSource, FinalState};
 pub use battery::hooks::{Phase, Progress, RunHooks};
-pub use battery::minimum::{MinimumReport, MinimumState};
+pub use battery::minimum::MinimumReport;
 pub use battery::record::{ChargeReport, FlowReport, NematicSample, PhaseReport, RunRecord};
 pub use battery::switch::{SwitchSettings, SwitchTarget, SwitchedNematic};
 pub use boundary::{Boundary, FreeSurface};
@@ -63,3 +63,4 @@ pub use tensor::{
     N_COMPONENTS, Tensor5, contract, largest_eigenvalue, matrix, order_and_director,
     square_traceless, uniaxial,
 };
+pub use topo_core::MinimumState;

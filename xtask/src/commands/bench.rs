@@ -2,9 +2,10 @@
 
 use super::cargo::{cargo, step};
 use crate::cli::BenchArgs;
-use crate::error::XtaskError;
+use topo_cli::CliError;
+use topo_cli::say;
 
-pub fn run(args: &BenchArgs) -> Result<(), XtaskError> {
+pub fn run(args: &BenchArgs) -> Result<(), CliError> {
     let mut command = cargo(&["bench", "--package", "topo-bench", "--"]);
     command.args(args.filter.as_deref());
     let mut table = Summary::default();
@@ -13,7 +14,7 @@ pub fn run(args: &BenchArgs) -> Result<(), XtaskError> {
     if ok {
         Ok(())
     } else {
-        Err(XtaskError::Step("bench failed".to_owned()))
+        Err(CliError::Step("bench failed".to_owned()))
     }
 }
 

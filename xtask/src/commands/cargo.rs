@@ -1,10 +1,11 @@
 //! Running cargo: steps that share one target folder and profile.
 
-use crate::error::XtaskError;
-use crate::provenance::workspace;
+use crate::workspace::workspace;
 use std::io::{BufRead, BufReader};
 use std::process::{Command, Stdio};
 use std::time::Instant;
+use topo_cli::CliError;
+use topo_cli::{note, say};
 
 /// Assertions for the workspace's own crates; the dependencies' builds stay shared.
 pub const CHECKED: [&str; 4] = [
@@ -27,10 +28,10 @@ pub fn step(
     name: &str,
     mut command: Command,
     mut line: impl FnMut(&str),
-) -> Result<bool, XtaskError> {
+) -> Result<bool, CliError> {
     let start = Instant::now();
     note!("== {name}");
-    let fail = |e: std::io::Error| XtaskError::Step(format!("{name}: {e}"));
+    let fail = |e: std::io::Error| CliError::Step(format!("{name}: {e}"));
     let mut child = command.stdout(Stdio::piped()).spawn().map_err(fail)?;
     if let Some(out) = child.stdout.take() {
         for text in BufReader::new(out).lines() {

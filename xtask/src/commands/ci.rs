@@ -2,13 +2,14 @@
 
 use super::cargo::{cargo, step};
 use super::{packages, test};
-use crate::error::XtaskError;
-use crate::provenance::workspace;
+use crate::workspace::workspace;
 use std::path::PathBuf;
+use topo_cli::CliError;
+use topo_cli::say;
 
-pub fn run() -> Result<(), XtaskError> {
+pub fn run() -> Result<(), CliError> {
     let mut failed: Vec<String> = Vec::new();
-    let mut check = |name: &str, command| -> Result<(), XtaskError> {
+    let mut check = |name: &str, command| -> Result<(), CliError> {
         if !step(name, command, |_| {})? {
             failed.push(name.to_owned());
         }
@@ -34,9 +35,7 @@ pub fn run() -> Result<(), XtaskError> {
         "package",
         cargo(&["package", "--workspace", "--no-verify", "--quiet"]),
     )?;
-    for (name, command) in packages::checks(&target())? {
-        check(&name, command)?;
-    }
+    check("packages build", packages::check(&target())?)?;
     let report = test::all(false)?;
     if !report.ok {
         failed.push("tests".to_owned());
@@ -51,7 +50,7 @@ pub fn run() -> Result<(), XtaskError> {
     if failed.is_empty() {
         Ok(())
     } else {
-        Err(XtaskError::Step(format!("ci {verdict}")))
+        Err(CliError::Step(format!("ci {verdict}")))
     }
 }
 

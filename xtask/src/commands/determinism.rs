@@ -1,12 +1,12 @@
 //! `cargo xtask determinism`: the same numbers from one thread, from two, and from runs killed at random moments.
 
-use super::compare;
 use crate::cli::DeterminismArgs;
-use crate::error::XtaskError;
-use crate::interrupt;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
+use topo_cli::CliError;
+use topo_cli::commands::compare;
+use topo_cli::{note, say};
 
 /// The account of bytes in the report of a run: each thread has room of its own.
 const BYTES: &str = "bytes";
@@ -14,8 +14,8 @@ const BYTES: &str = "bytes";
 /// How often a killed run is looked at.
 const POLL: Duration = Duration::from_millis(20);
 
-pub fn run(args: &DeterminismArgs) -> Result<(), XtaskError> {
-    let stop = interrupt::install();
+pub fn run(args: &DeterminismArgs) -> Result<(), CliError> {
+    let stop = topo_cli::install();
     let folder = args.out.join("determinism");
     if folder.exists() {
         std::fs::remove_dir_all(&folder).map_err(at(&folder))?;
@@ -23,16 +23,16 @@ pub fn run(args: &DeterminismArgs) -> Result<(), XtaskError> {
     let place = |name: &str| folder.join(name);
     let start = Instant::now();
     finish(&args.work("1", &place("one-thread")))?;
-    interrupt::check(&stop)?;
+    topo_cli::check(&stop)?;
     note!("one thread: {:.0} s", start.elapsed().as_secs_f64());
     let start = Instant::now();
     finish(&args.work("2", &place("two-threads")))?;
-    interrupt::check(&stop)?;
+    topo_cli::check(&stop)?;
     let whole = start.elapsed();
     note!("two threads: {:.0} s", whole.as_secs_f64());
     let mut moments = Moments(args.seed);
     let n_kills = torn(args, &place("killed"), whole, &mut moments)?;
-    interrupt::check(&stop)?;
+    topo_cli::check(&stop)?;
     let mut n_differences = 0;
     let dropped = [&compare::DROPPED[..], &[BYTES]].concat();
     for other in ["two-threads", "killed"] {
@@ -54,7 +54,7 @@ pub fn run(args: &DeterminismArgs) -> Result<(), XtaskError> {
     if n_differences == 0 {
         Ok(())
     } else {
-        Err(XtaskError::Step(format!("{n_differences} files differ")))
+        Err(CliError::Step(format!("{n_differences} files differ")))
     }
 }
 
@@ -75,8 +75,8 @@ impl DeterminismArgs {
     }
 }
 
-fn command(words: &[String]) -> Result<Command, XtaskError> {
-    let own = std::env::current_exe().map_err(|e| XtaskError::Step(e.to_string()))?;
+fn command(words: &[String]) -> Result<Command, CliError> {
+    let own = std::env::current_exe().map_err(|e| CliError::Step(e.to_string()))?;
     let mut command = Command::new(own);
     command
         .args(words)
@@ -86,8 +86,8 @@ fn command(words: &[String]) -> Result<Command, XtaskError> {
 }
 
 /// Runs to the end.
-fn finish(words: &[String]) -> Result<(), XtaskError> {
-    let failed = |what: String| XtaskError::Step(format!("{}: {what}", words.join(" ")));
+fn finish(words: &[String]) -> Result<(), CliError> {
+    let failed = |what: String| CliError::Step(format!("{}: {what}", words.join(" ")));
     let status = command(words)?
         .status()
         .map_err(|e| failed(e.to_string()))?;
@@ -104,9 +104,9 @@ fn torn(
     out: &Path,
     whole: Duration,
     moments: &mut Moments,
-) -> Result<u32, XtaskError> {
+) -> Result<u32, CliError> {
     let words = args.work("2", out);
-    let failed = |e: std::io::Error| XtaskError::Step(e.to_string());
+    let failed = |e: std::io::Error| CliError::Step(e.to_string());
     // On average all kills take the time of one whole run, so that it is met at every stage.
     let mean = whole.as_secs_f64() / f64::from(args.kills.max(1));
     let mut n_kills = 0;
@@ -141,9 +141,9 @@ impl Moments {
     }
 }
 
-fn at(path: &Path) -> impl Fn(std::io::Error) -> XtaskError {
+fn at(path: &Path) -> impl Fn(std::io::Error) -> CliError {
     let path: PathBuf = path.to_owned();
-    move |source| XtaskError::File {
+    move |source| CliError::File {
         path: path.clone(),
         source,
     }
@@ -157,7 +157,7 @@ mod tests {
     fn the_whole_is_computed_and_nothing_drawn() {
         let mut args = DeterminismArgs {
             scene: None,
-            quality: crate::figures::Quality::Draft,
+            quality: topo_view::Quality::Draft,
             kills: 3,
             seed: 1,
             out: PathBuf::from("results"),

@@ -3,14 +3,15 @@
 use super::cargo::{cargo, step};
 use super::record::record;
 use crate::cli::FuzzArgs;
-use crate::data;
-use crate::error::XtaskError;
-use crate::provenance::workspace;
+use crate::workspace::workspace;
 use serde::Serialize;
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use topo_analysis::write_table;
+use topo_cli::CliError;
+use topo_cli::{note, say};
+use topo_view::data;
 
 /// Most memory of a target, in MB, and most seconds for one input.
 const LIMITS: [&str; 2] = ["-rss_limit_mb=2048", "-timeout=60"];
@@ -27,9 +28,9 @@ struct Row {
     findings: u64,
 }
 
-pub fn run(args: &FuzzArgs) -> Result<(), XtaskError> {
+pub fn run(args: &FuzzArgs) -> Result<(), CliError> {
     if !(args.minutes > 0.0 && args.minutes <= 1e4) {
-        return Err(XtaskError::Argument {
+        return Err(CliError::Argument {
             key: "--minutes",
             value: args.minutes.to_string(),
             remedy: "give minutes for each target, up to 10000".to_owned(),
@@ -38,7 +39,7 @@ pub fn run(args: &FuzzArgs) -> Result<(), XtaskError> {
     let folder = workspace().join("fuzz");
     let all = targets(&folder)?;
     if let Some(name) = args.targets.iter().find(|name| !all.contains(name)) {
-        return Err(XtaskError::Argument {
+        return Err(CliError::Argument {
             key: "TARGET",
             value: name.clone(),
             remedy: format!("targets are {}", all.join(", ")),
@@ -69,7 +70,7 @@ pub fn run(args: &FuzzArgs) -> Result<(), XtaskError> {
     }
     let n_findings: u64 = rows.iter().map(|row| row.findings).sum();
     if n_findings > 0 {
-        return Err(XtaskError::Step(format!(
+        return Err(CliError::Step(format!(
             "{n_findings} findings in {}: mend the parser and move them to {}",
             folder.join("artifacts").display(),
             folder.join("corpus-findings").display()
@@ -79,12 +80,12 @@ pub fn run(args: &FuzzArgs) -> Result<(), XtaskError> {
 }
 
 /// Says what to install where cargo-fuzz is missing.
-fn installed() -> Result<(), XtaskError> {
+fn installed() -> Result<(), CliError> {
     let mut command = cargo(&["fuzz", "--version"]);
     command.stdout(Stdio::null()).stderr(Stdio::null());
     match command.status() {
         Ok(status) if status.success() => Ok(()),
-        _ => Err(XtaskError::Input(
+        _ => Err(CliError::Input(
             "cargo-fuzz is not installed: `cargo install cargo-fuzz` brings it (a C++ compiler is needed as well)"
                 .to_owned(),
         )),
@@ -92,24 +93,24 @@ fn installed() -> Result<(), XtaskError> {
 }
 
 /// Builds all targets: runs that follow are not touched by later changes of the code.
-fn build(folder: &Path) -> Result<(), XtaskError> {
+fn build(folder: &Path) -> Result<(), CliError> {
     // Nothing here is unsafe, so that no sanitizer is needed, and with none the stable compiler does.
     let mut command = cargo(&["fuzz", "build", "--sanitizer", "none", "--fuzz-dir"]);
     command.arg(folder).arg("--target-dir").arg(built());
     if step("fuzz targets", command, |_| {})? {
         Ok(())
     } else {
-        Err(XtaskError::Step("the fuzz targets do not build".to_owned()))
+        Err(CliError::Step("the fuzz targets do not build".to_owned()))
     }
 }
 
 /// The program of a target.
-fn program(name: &str) -> Result<PathBuf, XtaskError> {
+fn program(name: &str) -> Result<PathBuf, CliError> {
     // cargo-fuzz names a folder after the kind of machine.
     let kinds = std::fs::read_dir(built()).into_iter().flatten().flatten();
     let mut programs = kinds.map(|kind| kind.path().join("release").join(name));
     programs.find(|program| program.exists()).ok_or_else(|| {
-        XtaskError::Step(format!(
+        CliError::Step(format!(
             "the fuzz target {name} is not in {}",
             built().display()
         ))
@@ -117,10 +118,10 @@ fn program(name: &str) -> Result<PathBuf, XtaskError> {
 }
 
 /// Names of the targets, as their manifest lists them.
-fn targets(folder: &Path) -> Result<Vec<String>, XtaskError> {
+fn targets(folder: &Path) -> Result<Vec<String>, CliError> {
     let path = folder.join("Cargo.toml");
-    let wrong = |e: toml::de::Error| XtaskError::Input(format!("{}: {e}", path.display()));
-    let text = std::fs::read_to_string(&path).map_err(|source| XtaskError::File {
+    let wrong = |e: toml::de::Error| CliError::Input(format!("{}: {e}", path.display()));
+    let text = std::fs::read_to_string(&path).map_err(|source| CliError::File {
         path: path.clone(),
         source,
     })?;
@@ -142,9 +143,9 @@ fn built() -> PathBuf {
 }
 
 /// Runs a target and keeps what it prints.
-fn fuzz(folder: &Path, name: &str, minutes: f64, results: &Path) -> Result<(), XtaskError> {
+fn fuzz(folder: &Path, name: &str, minutes: f64, results: &Path) -> Result<(), CliError> {
     note!("== {name}");
-    let fail = |e: std::io::Error| XtaskError::Step(format!("fuzz {name}: {e}"));
+    let fail = |e: std::io::Error| CliError::Step(format!("fuzz {name}: {e}"));
     let (corpus, artifacts) = (
         folder.join("corpus").join(name),
         folder.join("artifacts").join(name),
@@ -176,7 +177,7 @@ fn fuzz(folder: &Path, name: &str, minutes: f64, results: &Path) -> Result<(), X
     data::write(&results.join(format!("{name}.log")), &log)?;
     let row = Row::of(name, &String::from_utf8_lossy(&log));
     if !ended_well && row.findings == 0 {
-        return Err(XtaskError::Step(format!(
+        return Err(CliError::Step(format!(
             "fuzz {name} stopped before it could find anything"
         )));
     }

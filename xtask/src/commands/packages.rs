@@ -1,17 +1,18 @@
-//! Whether every crate builds from its package alone, as a stranger gets it.
+//! Whether all crates build from their packages alone, as a stranger gets them.
 
 use super::cargo::cargo;
-use crate::error::XtaskError;
-use crate::provenance::workspace;
+use crate::workspace::workspace;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use topo_cli::CliError;
 
-/// One named check a crate, from the packages that `cargo package` left in `target`.
+/// A check of all packages that `cargo package` left in `target`.
 ///
-/// The packages are unpacked beside each other into a workspace of their own. `cargo package`
+/// They are unpacked beside each other into a workspace of their own, and checked together: one by one, each would have its
+/// dependencies with other features and check them again. `cargo package`
 /// can build them itself, but through a cache outside the target folder that takes a package
 /// of a given version for unchanging: it may build against what an earlier run left there.
-pub fn checks(target: &Path) -> Result<Vec<(String, Command)>, XtaskError> {
+pub fn check(target: &Path) -> Result<Command, CliError> {
     let root = target.join("package-check");
     if root.exists() {
         std::fs::remove_dir_all(&root).map_err(at(&root))?;
@@ -33,16 +34,13 @@ pub fn checks(target: &Path) -> Result<Vec<(String, Command)>, XtaskError> {
     std::fs::write(&file, manifest).map_err(at(&file))?;
     let lock = root.join("Cargo.lock");
     std::fs::copy(workspace().join("Cargo.lock"), &lock).map_err(at(&lock))?;
-    let check = |name: &String| {
-        let mut command = cargo(&["check", "--release", "--quiet", "--package", name]);
-        command.current_dir(&root).env("CARGO_TARGET_DIR", target);
-        (format!("package {name} builds"), command)
-    };
-    Ok(names.iter().map(check).collect())
+    let mut command = cargo(&["check", "--release", "--quiet", "--workspace"]);
+    command.current_dir(&root).env("CARGO_TARGET_DIR", target);
+    Ok(command)
 }
 
 /// The crates to be published: every folder of `crates/`.
-fn names() -> Result<Vec<String>, XtaskError> {
+fn names() -> Result<Vec<String>, CliError> {
     let folder = workspace().join("crates");
     let mut names = Vec::new();
     for entry in std::fs::read_dir(&folder).map_err(at(&folder))? {
@@ -53,9 +51,9 @@ fn names() -> Result<Vec<String>, XtaskError> {
     Ok(names)
 }
 
-fn at(path: &Path) -> impl Fn(std::io::Error) -> XtaskError {
+fn at(path: &Path) -> impl Fn(std::io::Error) -> CliError {
     let path: PathBuf = path.to_owned();
-    move |source| XtaskError::File {
+    move |source| CliError::File {
         path: path.clone(),
         source,
     }

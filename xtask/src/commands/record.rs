@@ -1,11 +1,11 @@
 //! Tables of the documentation, written by the commands that measured them.
 
-use crate::data;
-use crate::error::XtaskError;
-use crate::provenance::workspace;
+use crate::workspace::workspace;
+use topo_cli::CliError;
+use topo_view::data;
 
 /// Puts the table of a page of `docs` in the place of the one before.
-pub fn record(page: &str, table: &str) -> Result<(), XtaskError> {
+pub fn record(page: &str, table: &str) -> Result<(), CliError> {
     record_part(page, "table", table)
 }
 
@@ -18,18 +18,18 @@ fn marks(part: &str) -> [String; 2] {
 }
 
 /// Puts a named part of a page of `docs` in the place of the one before.
-pub fn record_part(page: &str, part: &str, table: &str) -> Result<(), XtaskError> {
+pub fn record_part(page: &str, part: &str, table: &str) -> Result<(), CliError> {
     let path = workspace().join("docs").join(page);
-    let text = std::fs::read_to_string(&path).map_err(|source| XtaskError::File {
+    let text = std::fs::read_to_string(&path).map_err(|source| CliError::File {
         path: path.clone(),
         source,
     })?;
     let text = replaced(&text, part, table).ok_or_else(|| {
         let [begin, end] = marks(part);
         let begin = begin.trim();
-        XtaskError::Input(format!("{}: no `{begin}` before `{end}`", path.display()))
+        CliError::Input(format!("{}: no `{begin}` before `{end}`", path.display()))
     })?;
-    data::write(&path, text.as_bytes())
+    Ok(data::write(&path, text.as_bytes())?)
 }
 
 fn replaced(page: &str, part: &str, table: &str) -> Option<String> {

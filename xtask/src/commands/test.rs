@@ -2,11 +2,12 @@
 
 use super::cargo::{CHECKED, cargo, step};
 use crate::cli::TestArgs;
-use crate::error::XtaskError;
-use crate::outside::Outside;
-use crate::provenance::workspace;
+use crate::workspace::workspace;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use topo_cli::CliError;
+use topo_cli::{note, say};
+use topo_view::Outside;
 
 /// How many tests passed, failed and were left out.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -76,18 +77,18 @@ impl std::fmt::Display for Report {
     }
 }
 
-pub fn run(args: &TestArgs) -> Result<(), XtaskError> {
+pub fn run(args: &TestArgs) -> Result<(), CliError> {
     let report = all(args.long)?;
     say!("{report}");
     if report.ok {
         Ok(())
     } else {
-        Err(XtaskError::Step("tests failed".to_owned()))
+        Err(CliError::Step("tests failed".to_owned()))
     }
 }
 
 /// Runs everything: what needs Python or a browser where there is one.
-pub fn all(long: bool) -> Result<Report, XtaskError> {
+pub fn all(long: bool) -> Result<Report, CliError> {
     let mut report = Report {
         counts: Counts::default(),
         ok: true,
@@ -132,7 +133,7 @@ pub fn all(long: bool) -> Result<Report, XtaskError> {
 
 impl Report {
     /// Runs the ignored tests whose names begin with `prefix`; that there is none is a failure.
-    fn ignored_tests(&mut self, what: &str, prefix: &str) -> Result<(), XtaskError> {
+    fn ignored_tests(&mut self, what: &str, prefix: &str) -> Result<(), CliError> {
         let mut command = harness();
         command.args(["--no-fail-fast", "--lib", "--bins", "--tests", "--"]);
         command.args(["--ignored", prefix]);
@@ -181,8 +182,8 @@ fn skipped(n: usize, outside: Outside) -> String {
 }
 
 /// Where cargo puts an example: beside this program.
-fn built_example(name: &str) -> Result<PathBuf, XtaskError> {
-    let failed = |e: std::io::Error| XtaskError::Step(format!("cannot find the examples: {e}"));
+fn built_example(name: &str) -> Result<PathBuf, CliError> {
+    let failed = |e: std::io::Error| CliError::Step(format!("cannot find the examples: {e}"));
     let program = std::env::current_exe().map_err(failed)?;
     let folder = program.parent().unwrap_or(Path::new(".")).join("examples");
     Ok(folder.join(format!("{name}{}", std::env::consts::EXE_SUFFIX)))
@@ -260,7 +261,7 @@ mod tests {
             "crates/a/examples/one.rs",
             "crates/a/examples/data.csv",
         ] {
-            crate::data::write(&dir.path().join(file), b"").unwrap();
+            topo_view::data::write(&dir.path().join(file), b"").unwrap();
         }
         let pair = |a: &str, b: &str| (a.to_owned(), b.to_owned());
         assert_eq!(examples(dir.path()), [pair("a", "one"), pair("b", "two")]);

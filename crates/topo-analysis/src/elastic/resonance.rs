@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use super::table::SweepRow;
 use crate::statistics::{Spread, median};
-use crate::table::SweepRow;
 
 /// Which part of the energy leads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]

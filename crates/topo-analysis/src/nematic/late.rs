@@ -11,7 +11,7 @@ const WINDOW: f64 = 2.0;
 ///
 /// # Validation
 /// `the_rate_of_an_exponential_is_found`
-pub(super) fn late_rate(curve: &DischargeCurve, end: f64) -> Option<f64> {
+pub fn late_rate(curve: &DischargeCurve, end: f64) -> Option<f64> {
     let last = curve
         .len()
         .checked_sub(1)

@@ -1,7 +1,7 @@
 //! Rows of the nematic tables: sweep, time series, defect lines, slices.
 
 use serde::{Deserialize, Serialize};
-use topo_nematic::MinimumState;
+use topo_core::MinimumState;
 
 /// One discharge of a charged colloid: lengths in ξ_N, energies in L ξ_N, times in τ_N.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -122,7 +122,7 @@ pub struct NematicRow {
 }
 
 /// Order parameter above which a ring counts as buckled.
-pub(super) const BUCKLED: f64 = 0.01;
+pub const BUCKLED: f64 = 0.01;
 
 impl NematicRow {
     /// Whether two rows are of one discharge, whatever their resolution.

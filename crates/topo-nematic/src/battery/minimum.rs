@@ -1,35 +1,11 @@
 //! Whether a charged state is a minimum of its energy.
 
 use serde::{Deserialize, Serialize};
+use topo_core::MinimumState;
 
 use crate::Particle;
 use crate::hessian::{Accuracy, Hessian, LowestMode};
 use crate::kernel::run::Kernel;
-
-/// What the lowest eigenvalue λ of the Hessian says of a state, in units of the decay of the director's slowest mode between the
-/// plates, λ₀ = L π²/L_z².
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum MinimumState {
-    /// λ > λ₀/100: every small change decays.
-    Minimum,
-    /// λ < −λ₀/1000: one change grows; a charge that stays there after all kicks says so.
-    Saddle,
-    /// Between: a change that hardly does either. Normal above the buckling, where the energy hardly depends on the direction of the
-    /// tilt: only the lattice ties it, least for odd charges.
-    Marginal,
-}
-
-impl MinimumState {
-    /// Its name in tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Minimum => "minimum",
-            Self::Saddle => "saddle",
-            Self::Marginal => "marginal",
-        }
-    }
-}
 
 /// How the check of a charged state ended.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -54,15 +30,13 @@ const SADDLE: f64 = 1e-3;
 /// Tilt of the director, in radians, that changes a tensor as much as a kick does where it changes it most.
 const KICK: f64 = 0.05;
 
-impl MinimumState {
-    fn of(eigenvalue: f64, unit: f64) -> Self {
-        if eigenvalue > MINIMUM * unit {
-            Self::Minimum
-        } else if eigenvalue < -SADDLE * unit {
-            Self::Saddle
-        } else {
-            Self::Marginal
-        }
+fn state_of(eigenvalue: f64, unit: f64) -> MinimumState {
+    if eigenvalue > MINIMUM * unit {
+        MinimumState::Minimum
+    } else if eigenvalue < -SADDLE * unit {
+        MinimumState::Saddle
+    } else {
+        MinimumState::Marginal
     }
 }
 
@@ -95,7 +69,7 @@ impl<'a> Check<'a> {
         };
         let hessian = Hessian::new(kernel, q);
         let lowest = hessian.lowest(particle, wanted, n_products, stop)?;
-        let state = MinimumState::of(lowest.eigenvalue, unit);
+        let state = state_of(lowest.eigenvalue, unit);
         Some(Self {
             hessian,
             kernel,

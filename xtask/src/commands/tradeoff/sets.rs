@@ -2,22 +2,24 @@
 
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
+use topo_cli::say;
 
-use super::super::record::record_part;
-use super::{kept, measure};
 use crate::cli::TradeoffArgs;
-use crate::error::XtaskError;
-use crate::figures::Quality;
-use crate::provenance::{commit, workspace};
-use crate::{data, interrupt};
-use topo_analysis::{
+use crate::commands::record::record_part;
+use crate::workspace::workspace;
+use topo_analysis::{read_table, write_table};
+use topo_cli::CliError;
+use topo_cli::commands::tradeoff::{kept, measure};
+use topo_lab::{
     CaseSet, CheckRow, Factor, Measured, Point, Record, Stamp, System, TradeoffRow,
-    check_estimates, compared, factor_of_estimates, ladder, points, read_table, table_hash,
-    write_table,
+    check_estimates, compared, factor_of_estimates, ladder, points, table_hash,
 };
+use topo_view::Quality;
+use topo_view::data;
+use topo_view::provenance::commit;
 
 /// Where the tables lie, below the workspace.
-const TABLES: &str = "crates/topo-analysis/data";
+const TABLES: &str = "crates/topo-lab/data";
 
 fn place(table: Measured, extension: &str) -> PathBuf {
     let name = format!("tradeoff-{}.{extension}", table.system().name());
@@ -35,17 +37,17 @@ fn stamp(table: Measured, n_cases: usize) -> Stamp {
     }
 }
 
-fn text(path: &Path) -> Result<String, XtaskError> {
-    std::fs::read_to_string(path).map_err(|source| XtaskError::File {
+fn text(path: &Path) -> Result<String, CliError> {
+    std::fs::read_to_string(path).map_err(|source| CliError::File {
         path: path.to_owned(),
         source,
     })
 }
 
-fn write_record(table: Measured, record: &Record) -> Result<(), XtaskError> {
+fn write_record(table: Measured, record: &Record) -> Result<(), CliError> {
     let path = place(table, "json");
     let text = serde_json::to_string_pretty(record)
-        .map_err(|e| XtaskError::Input(format!("{}: {e}", path.display())))?;
+        .map_err(|e| CliError::Input(format!("{}: {e}", path.display())))?;
     data::write(&path, format!("{text}\n").as_bytes())?;
     say!("recorded: {}", path.display());
     Ok(())
@@ -56,7 +58,7 @@ const PAGE: &str = "tradeoff.md";
 
 /// Writes what a trade-off measured into the table of its system, which has no factor then, and into the page; knots have no
 /// table.
-pub fn record_table(system: System, rows: &[TradeoffRow]) -> Result<(), XtaskError> {
+pub fn record_table(system: System, rows: &[TradeoffRow]) -> Result<(), CliError> {
     let Some(table) = Measured::ALL.into_iter().find(|t| t.system() == system) else {
         return Ok(());
     };
@@ -71,13 +73,13 @@ pub fn record_table(system: System, rows: &[TradeoffRow]) -> Result<(), XtaskErr
     write_table(&path, &points)?;
     say!("recorded: {}", path.display());
     write_record(table, &record)?;
-    let text = crate::tradeoff::section(Quality::Standard, system, rows);
+    let text = topo_view::tradeoff::section(Quality::Standard, system, rows);
     record_part(PAGE, &format!("{} settings", system.name()), &text)
 }
 
 /// Runs the settings of wishes on the cases of a set: the factor from one, how it holds from the other.
-pub fn measure_set(args: &TradeoffArgs, name: &str, folder: &Path) -> Result<(), XtaskError> {
-    let stop = interrupt::install();
+pub fn measure_set(args: &TradeoffArgs, name: &str, folder: &Path) -> Result<(), CliError> {
+    let stop = topo_cli::install();
     let set = if name == CaseSet::Factor.name() {
         CaseSet::Factor
     } else {
@@ -94,16 +96,16 @@ pub fn measure_set(args: &TradeoffArgs, name: &str, folder: &Path) -> Result<(),
             ladder(system, set, work)
         })?;
         write_table(&kept, &runs)?;
-        interrupt::check(&stop)?;
+        topo_cli::check(&stop)?;
         let rows = compared(system, &runs);
         write_table(&folder.join(format!("{}-{name}.csv", system.name())), &rows)?;
         let points: Vec<Point> = read_table(&place(table, "csv"))?;
         let json = place(table, "json");
         let mut record: Record = serde_json::from_str(&text(&json)?)
-            .map_err(|e| XtaskError::Input(format!("{}: {e}", json.display())))?;
+            .map_err(|e| CliError::Input(format!("{}: {e}", json.display())))?;
         if set == CaseSet::Factor {
             let cover = factor_of_estimates(system, &points, &rows)
-                .ok_or_else(|| XtaskError::Input(format!("no case of {} ran", system.name())))?;
+                .ok_or_else(|| CliError::Input(format!("no case of {} ran", system.name())))?;
             say!(
                 "{}: {:.3} times the raw estimate covers {:.1} % of the errors of {} cases",
                 system.name(),
@@ -122,7 +124,7 @@ pub fn measure_set(args: &TradeoffArgs, name: &str, folder: &Path) -> Result<(),
             }
         } else {
             let factor = record.factor.ok_or_else(|| {
-                XtaskError::Input(format!(
+                CliError::Input(format!(
                     "{} has no factor yet: run `cargo xtask tradeoff --set factor --record` first",
                     json.display()
                 ))
@@ -132,7 +134,7 @@ pub fn measure_set(args: &TradeoffArgs, name: &str, folder: &Path) -> Result<(),
     }
     if set == CaseSet::Check {
         write_table(&folder.join("check.csv"), &checked)?;
-        let report = crate::tradeoff::check_report(&checked);
+        let report = topo_view::tradeoff::check_report(&checked);
         data::write(&folder.join("check.md"), report.as_bytes())?;
         say!("{report}");
         if args.record {
@@ -147,7 +149,7 @@ pub fn measure_set(args: &TradeoffArgs, name: &str, folder: &Path) -> Result<(),
                     record_part(
                         PAGE,
                         &format!("{name} check"),
-                        &crate::tradeoff::check_report(&of),
+                        &topo_view::tradeoff::check_report(&of),
                     )?;
                 }
             }

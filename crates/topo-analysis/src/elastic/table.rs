@@ -1,0 +1,121 @@
+//! Rows of the elastic tables.
+
+use serde::{Deserialize, Serialize};
+
+/// One discharge: energies in E_0 = E_b h² L, times in T_0 = 2 L η/(h E_b), L the row's own length.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct SweepRow {
+    /// Folder of the case beside the table.
+    pub case: String,
+    /// Knot type.
+    pub knot: String,
+    /// θ'h tied in before the ends were fused.
+    pub twist: f64,
+    /// Place of the cut, s/L.
+    pub cut: f64,
+    /// Reading of the slenderness.
+    pub reading: String,
+    /// Edges of the rod.
+    pub edges: usize,
+    /// L/h.
+    #[serde(default)]
+    pub slenderness: f64,
+    /// Ratio α of twist to bending stiffness.
+    #[serde(default)]
+    pub twist_ratio: f64,
+    /// Stretch stiffness γ = E/E_b.
+    #[serde(default)]
+    pub stretch_ratio: f64,
+    /// Stiffness k_c of the contact; empty without contact.
+    #[serde(default)]
+    pub contact_stiffness: Option<f64>,
+    /// η_f/η; empty without friction.
+    #[serde(default)]
+    pub friction_ratio: Option<f64>,
+    /// Where friction reaches: as the reading says, contact, or a multiple of the contact diameter; empty without friction.
+    #[serde(default)]
+    pub friction_range: Option<String>,
+    /// Random perturbation of the start curve, in h.
+    #[serde(default)]
+    pub imperfection: f64,
+    /// Its seed, and that of the closures.
+    #[serde(default)]
+    pub seed: u64,
+    /// Local error aimed at, in h.
+    #[serde(default)]
+    pub tolerance: f64,
+    /// Elastic energy after charging.
+    pub energy: f64,
+    /// Its bending part.
+    pub bend: f64,
+    /// Its twist part.
+    pub twist_energy: f64,
+    /// Its stretch part.
+    pub stretch: f64,
+    /// Elastic energy that the image of an amphichiral knot which was not kept has after charging; empty where only one was
+    /// charged, and in tables written before there was this column.
+    #[serde(default)]
+    pub energy_other_image: Option<f64>,
+    /// Writhe after charging.
+    pub writhe: f64,
+    /// Total twist after charging, in turns.
+    pub total_twist: f64,
+    /// Time at which half of the elastic energy before the cut was released; 0 if the cut itself did.
+    pub t50: Option<f64>,
+    /// Same for 90 %.
+    pub t90: Option<f64>,
+    /// Same for 95 %.
+    pub t95: Option<f64>,
+    /// Same for 99 %.
+    pub t99: Option<f64>,
+    /// Time at which half of the elastic energy that the cut left was released.
+    pub t50_after_cut: Option<f64>,
+    /// Same for 90 %.
+    pub t90_after_cut: Option<f64>,
+    /// Same for 95 %.
+    pub t95_after_cut: Option<f64>,
+    /// Same for 99 %.
+    pub t99_after_cut: Option<f64>,
+    /// Time of the last change of the knot type to the unknot; empty if not seen.
+    pub t_untie: Option<f64>,
+    /// Largest |Δ(Tw + Wr)| while closed, in turns.
+    pub link_drift: Option<f64>,
+    /// Least distance of vertices of different strands over the contact diameter, charge and discharge.
+    pub min_distance_over_contact: Option<f64>,
+    /// Accepted steps of charge and discharge.
+    pub steps: u64,
+    /// Refused steps of charge and discharge.
+    pub rejected: u64,
+    /// Processor seconds of this discharge and its share of the charge.
+    pub cpu_seconds: f64,
+    /// Warnings, separated by `;`.
+    pub warnings: String,
+}
+
+impl SweepRow {
+    /// Whether two rows are of one charged state, whatever their resolution.
+    pub fn is_same_state(&self, other: &Self) -> bool {
+        let settings = |r: &Self| {
+            (
+                r.knot.clone(),
+                r.reading.clone(),
+                [
+                    r.twist,
+                    r.slenderness,
+                    r.twist_ratio,
+                    r.stretch_ratio,
+                    r.imperfection,
+                ],
+                [r.contact_stiffness, r.friction_ratio],
+                r.friction_range.clone(),
+                r.seed,
+            )
+        };
+        settings(self) == settings(other)
+    }
+
+    /// t50, t90, t95 and t99.
+    pub fn times(&self) -> [Option<f64>; 4] {
+        [self.t50, self.t90, self.t95, self.t99]
+    }
+}

@@ -1,0 +1,301 @@
+//! The command line.
+
+use clap::{Args, Parser, Subcommand};
+use std::path::PathBuf;
+use topo_lab::Shard;
+use topo_view::Quality;
+
+mod count;
+mod knot;
+
+pub use knot::{IdentifyArgs, KnotArgs, KnotCommand, KnotQuality, TightenArgs};
+
+/// Topological batteries: knotted elastic fibres and nematic colloids, charged, discharged and drawn.
+#[derive(Debug, Parser)]
+#[command(name = "topo", bin_name = "topo", version, about)]
+pub struct Cli {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Any,
+}
+
+/// Any of the commands.
+#[derive(Debug, Subcommand)]
+pub enum Any {
+    /// Experiments, pictures and knots.
+    #[command(flatten)]
+    Command(Command),
+    /// Measurements.
+    #[command(flatten)]
+    Measure(Measure),
+}
+
+/// What to do.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Compute what figures need and draw them, with a gallery page.
+    ///
+    /// Finished runs are reused; a change of quality or code recomputes what it touches.
+    #[command(after_help = "Examples:
+  topo figures                              all figures, draft quality
+  topo figures --only elastic-discharge     one of them
+  topo figures --quality standard --out results-standard
+  topo figures --quality paper --shard 2/4 --out part-2    every fourth case, to be merged
+  topo figures --quality paper --as-is      draw the cases that are finished")]
+    Figures(FiguresArgs),
+    /// Run the scene of a file: charge, cut, discharge.
+    #[command(after_help = "Examples:
+  topo run scenes/trefoil.toml
+  topo run scenes/trefoil.toml --cuts all:8 --out my-results
+  topo run scenes/elastic-quick.toml --accuracy 0.02    settings for 2 %, and the error it has
+  topo run scenes/nematic-desk.toml --budget \"10 min\"
+  topo run scenes/nematic-quick.toml --fields --out fields    for `topo export`")]
+    Run(RunArgs),
+    /// Measure the error of discharge times: 35 fixed cases against finer runs of the same cuts, or the exact discharge where that is known.
+    #[command(after_help = "Examples:
+  topo accuracy                       the draft preset
+  topo accuracy --quality standard")]
+    Accuracy(AccuracyArgs),
+    /// Drive rods, nematics and the knot generator to their extremes: maps of what converges and why the rest stops.
+    #[command(after_help = "Examples:
+  topo stability                       all maps, draft: minutes
+  topo stability --only nematic        those of one system
+  topo stability --quality standard    every run to its very end")]
+    Stability(SystemsArgs),
+    /// Compare the numbers of two results folders to the byte, but for what tells how long they took.
+    #[command(after_help = "Example:
+  topo compare results results-again")]
+    Compare(CompareArgs),
+    /// Write the shapes and fields of a case for ParaView, PyVista, numpy or nemaktis.
+    ///
+    /// A fibre becomes a line with arc length, tangent, curvature, twist, stretch and energy density, once charged and over
+    /// its discharge; a colloid becomes its defect lines, the particle's surface, the plane through its centre and, where
+    /// the scene was run with --fields, Q, director, order and velocity in all of the cell.
+    #[command(after_help = "Examples:
+  topo export results/elastic/3_1_twist+0.00_shrunk_n200
+  topo export results/nematic/q04_r20_h1.5_cut-link_f64_flow-on --format vtk --to seen
+  topo run scenes/nematic-quick.toml --fields --out fields
+  topo export fields/nematic-quick/q02_r15_h1.5_cut-link_f64_flow-off --format nemaktis")]
+    Export(ExportArgs),
+    /// The knot generator: tighten a knot, name a curve, look at the table.
+    Knot(KnotArgs),
+}
+
+/// What is measured of the programs themselves.
+#[derive(Debug, Subcommand)]
+pub enum Measure {
+    /// Charge colloids near the critical charge under other spacings, seeds, tolerances and boundary schemes: what decides where rings buckle.
+    #[command(after_help = "Examples:
+  topo buckling                          R = 15 and 25: half an hour on one processor
+  topo buckling --radius 52.5 --jobs 1   the published size: an hour, 2 GB")]
+    Buckling(BucklingArgs),
+    /// Measure what accuracy costs: the same cases under many settings, against converged references.
+    #[command(after_help = "Examples:
+  topo tradeoff                        draft: minutes
+  topo tradeoff --only rod             one system")]
+    Tradeoff(SystemsArgs),
+    /// Measure what each term of a scene costs in time and bytes, with it and without it.
+    #[command(after_help = "Examples:
+  topo cost                       small runs: about a minute
+  topo cost --quality standard")]
+    Cost(CostArgs),
+}
+
+/// Options of `figures`.
+#[derive(Debug, Args)]
+pub struct FiguresArgs {
+    /// Draw only this figure; may be given several times.
+    #[arg(long, value_name = "NAME")]
+    pub only: Vec<String>,
+    /// How much to compute.
+    #[arg(long, value_enum, default_value_t = Quality::Draft)]
+    pub quality: Quality,
+    /// Compute part I of N only and draw nothing; each part may run anywhere.
+    #[arg(long, value_name = "I/N")]
+    pub shard: Option<Shard>,
+    /// Compute nothing: draw what the folder holds of a sweep that is not finished.
+    #[arg(long, conflicts_with_all = ["shard", "fresh"])]
+    pub as_is: bool,
+    /// Draw the tight knots of `knots-table` as thin tubes with their struts.
+    #[arg(long)]
+    pub struts: bool,
+    /// Folder with knots of your own, one TOML file each, shown in `knots-table` besides the built-in ones.
+    #[arg(long, value_name = "DIR")]
+    pub knots: Option<PathBuf>,
+    /// Where and how it is computed.
+    #[command(flatten)]
+    pub work: WorkArgs,
+}
+
+/// Options of `accuracy`.
+#[derive(Debug, Args)]
+pub struct AccuracyArgs {
+    /// Which preset is measured.
+    #[arg(long, value_enum, default_value_t = Quality::Draft)]
+    pub quality: Quality,
+    /// Where and how it is computed.
+    #[command(flatten)]
+    pub work: WorkArgs,
+}
+
+/// Options of `run`.
+#[derive(Debug, Args)]
+pub struct RunArgs {
+    /// Scene in TOML.
+    pub scene: PathBuf,
+    /// Where to cut: `argmax`, `near-ties`, `all:K`, or places s/L such as `0.25,0.5`; instead of the scene's own.
+    #[arg(long, value_name = "CUTS")]
+    pub cuts: Option<String>,
+    /// Largest relative error of the discharge times (t99 of a rod, t99.9 of a colloid): picks the settings, and estimates the
+    /// error of each result.
+    #[arg(
+        long,
+        value_name = "ERROR",
+        conflicts_with = "budget",
+        allow_negative_numbers = true
+    )]
+    pub accuracy: Option<f64>,
+    /// Time that the scene may take, such as "10 min": picks the most accurate settings for it.
+    #[arg(long, value_name = "TIME")]
+    pub budget: Option<String>,
+    /// Keep the whole nematic field at each time looked at, for `export` (13 files a case; 3 MB each at R = 15).
+    #[arg(long)]
+    pub fields: bool,
+    /// Compute part I of N only; each part may run anywhere.
+    #[arg(long, value_name = "I/N")]
+    pub shard: Option<Shard>,
+    /// Seconds between checkpoints inside a nematic case.
+    #[arg(long, value_name = "SECONDS", default_value_t = 25.0)]
+    pub checkpoint: f64,
+    /// Folder with knots of your own, one TOML file each, besides the built-in ones.
+    #[arg(long, value_name = "DIR")]
+    pub knots: Option<PathBuf>,
+    /// Where and how it is computed.
+    #[command(flatten)]
+    pub work: WorkArgs,
+}
+
+/// Options that every computation has.
+#[derive(Debug, Args)]
+pub struct WorkArgs {
+    /// Folder of the results.
+    #[arg(long, value_name = "DIR", default_value = "results")]
+    pub out: PathBuf,
+    /// Number of threads; all processors when left out.
+    #[arg(long, value_name = "N", value_parser = count::from(1, count::MOST_JOBS))]
+    pub jobs: Option<usize>,
+    /// Compute everything anew.
+    #[arg(long)]
+    pub fresh: bool,
+}
+
+/// Options of `export`.
+#[derive(Debug, Args)]
+pub struct ExportArgs {
+    /// Folder of a case: the one that holds run.json.
+    pub case: PathBuf,
+    /// Where the files go; `export` inside the case's folder when left out.
+    #[arg(long, value_name = "DIR")]
+    pub to: Option<PathBuf>,
+    /// Which files.
+    #[arg(long, value_enum, default_value_t = ExportFormat::All)]
+    pub format: ExportFormat,
+    /// Micrometres that one correlation length stands for in the files for nemaktis.
+    #[arg(long, value_name = "UM", default_value_t = 0.006_63)]
+    pub micrometres: f64,
+}
+
+/// File formats of `export`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum ExportFormat {
+    /// VTK XML: .vtp, .vti, .vtu, with .pvd for time series.
+    Vtk,
+    /// One .npz a case, and one a field.
+    Npz,
+    /// .vti with the arrays n, Q and domain_mask, lengths in micrometres; needs fields.
+    Nemaktis,
+    /// All of them.
+    All,
+}
+
+/// Options of `stability` and `tradeoff`.
+#[derive(Debug, Args)]
+pub struct SystemsArgs {
+    /// Only this system (rod, nematic, knots); may be given several times.
+    #[arg(long, value_name = "SYSTEM", value_parser = ["rod", "nematic", "knots"])]
+    pub only: Vec<String>,
+    /// How much is run: draft or standard.
+    #[arg(long, value_enum, default_value_t = Quality::Draft, hide_possible_values = true)]
+    pub quality: Quality,
+    /// Where and how it is computed.
+    #[command(flatten)]
+    pub work: WorkArgs,
+}
+
+impl SystemsArgs {
+    /// Whether a system is among those asked for.
+    pub fn takes(&self, system: topo_lab::System) -> bool {
+        self.only.is_empty() || self.only.iter().any(|name| name == system.name())
+    }
+}
+
+/// Options of `buckling`.
+#[derive(Debug, Args)]
+pub struct BucklingArgs {
+    /// Radius of the particle, in xi_N: 15, 25 or 52.5; may be given several times.
+    #[arg(long, value_name = "R", default_values_t = [15.0, 25.0])]
+    pub radius: Vec<f64>,
+    /// Where and how it is computed.
+    #[command(flatten)]
+    pub work: WorkArgs,
+}
+
+/// Options of `cost`.
+#[derive(Debug, Args)]
+pub struct CostArgs {
+    /// How large the runs are: draft or standard.
+    #[arg(long, value_enum, default_value_t = Quality::Draft, hide_possible_values = true)]
+    pub quality: Quality,
+    /// Folder of the results.
+    #[arg(long, value_name = "DIR", default_value = "results")]
+    pub out: PathBuf,
+}
+
+/// Options of `compare`.
+#[derive(Debug, Args)]
+pub struct CompareArgs {
+    /// A results folder.
+    pub first: PathBuf,
+    /// Another.
+    pub second: PathBuf,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        Cli::command().debug_assert();
+        let cli = Cli::try_parse_from([
+            "topo",
+            "figures",
+            "--only",
+            "knots-table",
+            "--quality",
+            "paper",
+            "--jobs",
+            "1",
+        ])
+        .unwrap();
+        let Any::Command(Command::Figures(f)) = cli.command else {
+            panic!("not figures")
+        };
+        assert_eq!(
+            (f.only.len(), f.quality, f.work.jobs),
+            (1, Quality::Paper, Some(1))
+        );
+        assert!(Cli::try_parse_from(["topo", "figures", "--quality", "best"]).is_err());
+    }
+}

@@ -1,0 +1,48 @@
+//! What each command does.
+
+pub mod accuracy;
+pub mod buckling;
+pub mod compare;
+pub mod cost;
+mod export;
+mod figures;
+mod knot;
+mod run;
+mod settings;
+mod stability;
+pub mod tradeoff;
+
+use std::path::Path;
+use std::process::ExitCode;
+
+use crate::cli::{Command, Measure};
+use crate::error::CliError;
+
+/// Runs a command; only `knot identify` ends well in more ways than one. Figures note the commit of `workspace`, if there is one.
+///
+/// # Errors
+/// What the command says, with an exit code.
+pub fn dispatch(command: Command, workspace: Option<&Path>) -> Result<ExitCode, CliError> {
+    match command {
+        Command::Knot(args) => return knot::run(&args),
+        Command::Figures(args) => figures::run(&args, workspace),
+        Command::Run(args) => run::run(&args),
+        Command::Accuracy(args) => accuracy::run(&args),
+        Command::Stability(args) => stability::run(&args),
+        Command::Compare(args) => compare::run(&args),
+        Command::Export(args) => export::run(&args),
+    }
+    .map(|()| ExitCode::SUCCESS)
+}
+
+/// Runs a measurement and keeps its tables below the results.
+///
+/// # Errors
+/// What the command says, with an exit code.
+pub fn measure(command: &Measure) -> Result<(), CliError> {
+    match command {
+        Measure::Buckling(args) => buckling::run(args).map(drop),
+        Measure::Tradeoff(args) => tradeoff::run(args, &mut |_, _| Ok(())),
+        Measure::Cost(args) => cost::run(args).map(drop),
+    }
+}

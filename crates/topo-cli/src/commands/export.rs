@@ -1,0 +1,30 @@
+//! `topo export CASE`: files for ParaView, PyVista, numpy and nemaktis.
+
+use crate::cli::{ExportArgs, ExportFormat};
+use crate::error::CliError;
+use topo_view::export::{self, Wanted};
+
+pub fn run(args: &ExportArgs) -> Result<(), CliError> {
+    if !(args.micrometres > 0.0 && args.micrometres <= 1e6) {
+        return Err(CliError::Argument {
+            key: "--micrometres",
+            value: args.micrometres.to_string(),
+            remedy: "a positive length up to 1e6 is needed, such as 0.00663".to_owned(),
+        });
+    }
+    let any = |formats: &[ExportFormat]| {
+        args.format == ExportFormat::All || formats.contains(&args.format)
+    };
+    let wanted = Wanted {
+        vtk: any(&[ExportFormat::Vtk]),
+        npz: any(&[ExportFormat::Npz]),
+        nemaktis: any(&[ExportFormat::Nemaktis]).then_some(args.micrometres),
+    };
+    let folder = args.to.clone().unwrap_or_else(|| args.case.join("export"));
+    let made = export::write(&args.case, &folder, &wanted)?;
+    for note in &made.notes {
+        say!("note: {note}");
+    }
+    say!("{} files written to {}", made.files.len(), folder.display());
+    Ok(())
+}

@@ -1,0 +1,80 @@
+//! `topo stability`: runs at the extremes, as tables, maps and a report.
+
+use std::time::Instant;
+
+use super::settings::{effort, threads};
+use crate::cli::SystemsArgs;
+use crate::error::CliError;
+use crate::interrupt;
+use crate::progress::Progress;
+use topo_analysis::{read_table, write_table};
+use topo_lab::{StabilityRow, System, n_extremes, with_jobs};
+use topo_view::{data, stability};
+
+/// Changes with whatever changes the outcome of a run.
+const VERSION: u32 = 3;
+
+pub fn run(args: &SystemsArgs) -> Result<(), CliError> {
+    let effort = effort(args.quality)?;
+    let jobs = threads(args.work.jobs)?;
+    let stop = interrupt::install();
+    let folder = args.work.out.join("stability");
+    std::fs::create_dir_all(&folder).map_err(|source| CliError::File {
+        path: folder.clone(),
+        source,
+    })?;
+    let mut maps = Vec::new();
+    for system in System::ALL {
+        if !args.only.is_empty() && !args.only.iter().any(|name| name == system.name()) {
+            continue;
+        }
+        let start = Instant::now();
+        // Runs of another version or quality are not taken for these.
+        let kept = format!("{}-{}-v{VERSION}.runs.csv", system.name(), args.quality);
+        let kept = folder.join(kept.to_lowercase());
+        let known: Vec<StabilityRow> = if kept.exists() && !args.work.fresh {
+            read_table(&kept)?
+        } else {
+            Vec::new()
+        };
+        let n_runs = n_extremes(system);
+        let progress = Progress::start(system.name(), n_runs);
+        let told = |row: &StabilityRow| {
+            progress.done(&format!(
+                "{} = {}, {} = {}",
+                row.axis_x, row.x, row.axis_y, row.y
+            ));
+        };
+        let rows = with_jobs(jobs, || {
+            topo_lab::stability(system, effort, &known, &stop, &told)
+        })?;
+        write_table(&kept, &rows)?;
+        if rows.len() < n_runs {
+            return Err(CliError::Interrupted);
+        }
+        progress.finish();
+        write_table(&folder.join(format!("{}.csv", system.name())), &rows)?;
+        let picture = stability::draw(&rows)?;
+        for (extension, bytes) in [("png", &picture.png[..]), ("svg", picture.svg.as_bytes())] {
+            data::write(
+                &folder.join(format!("{}.{extension}", system.name())),
+                bytes,
+            )?;
+        }
+        let wall = format!("{:.0} s", start.elapsed().as_secs_f64());
+        say!("{}", stability::summary(system.name(), &rows, &wall));
+        maps.push((system.name(), rows));
+    }
+    let report = stability::report(args.quality, &maps);
+    data::write(&folder.join("stability.md"), report.as_bytes())?;
+    say!("report: {}", folder.join("stability.md").display());
+    // Rows carry where runs must converge.
+    let broken: usize = maps.iter().map(|(_, rows)| stability::n_broken(rows)).sum();
+    if broken > 0 {
+        return Err(CliError::Step(format!(
+            "{broken} runs broke a rule; see the tables in {}",
+            folder.display()
+        )));
+    }
+    Ok(())
+}

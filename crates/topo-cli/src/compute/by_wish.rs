@@ -1,0 +1,65 @@
+//! Runs whose settings were picked for an accuracy or a budget: what was picked, and what the error came to.
+
+use std::path::Path;
+
+use crate::duration::duration;
+use crate::error::CliError;
+use topo_analysis::{median, quantile, write_table};
+use topo_lab::{ErrorRow, Grant, Wish};
+
+/// Tells which setting grants a wish; `unit` is what its resolution counts.
+pub fn tell_grant(grant: &Grant, unit: &str) {
+    let p = &grant.point;
+    if let Some(reason) = &grant.stale {
+        note!("warning: {reason}");
+    }
+    note!(
+        "{}: {} {unit}, tolerance {:e}; measured on {} cases: off by {:.2} % (median), {:.2} % (90th percentile); {} of one processor",
+        grant.wish,
+        p.resolution,
+        p.tolerance,
+        p.n_cases,
+        100.0 * p.median_error,
+        100.0 * p.high_error,
+        duration(grant.cpu_seconds),
+    );
+}
+
+/// Writes `errors.csv` beside the table of the results and tells what is in it.
+pub fn tell_errors(grant: &Grant, rows: &[ErrorRow], folder: &Path) -> Result<(), CliError> {
+    let path = folder.join("errors.csv");
+    write_table(&path, rows)?;
+    say!("estimated errors:");
+    for r in rows {
+        let time = r
+            .result
+            .map_or_else(|| "not reached".to_owned(), |t| format!("{t:.4}"));
+        let error = r
+            .relative_error
+            .map_or_else(String::new, |e| format!(" ± {:.2} %", 100.0 * e));
+        let cut = r
+            .cut
+            .map_or_else(String::new, |c| format!(", cut at {c:.4}"));
+        say!("  {}{cut}: {} = {time}{error}", r.case, r.quantity);
+    }
+    let errors = || rows.iter().filter_map(|r| r.relative_error);
+    if let (Some(middle), Some(high)) = (median(errors()), quantile(errors(), 0.9)) {
+        say!(
+            "estimates: median {:.2} %, 90th percentile {:.2} %; {}",
+            100.0 * middle,
+            100.0 * high,
+            path.display()
+        );
+    }
+    if let Wish::Accuracy(asked) = grant.wish {
+        let n = errors().filter(|e| *e > asked).count();
+        if n > 0 {
+            say!(
+                "{n} of {} may be off by more than the {:.2} % asked for: ask for less, or look at these one by one",
+                rows.len(),
+                100.0 * asked
+            );
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,241 @@
+//! What a command will take, told before the work, and what it took.
+
+use super::order::{Order, knots_of, more_knots};
+use crate::duration::duration;
+use crate::error::CliError;
+use indicatif::DecimalBytes;
+use topo_knots::{KnotTable, TightenSettings};
+use topo_lab::{
+    ElasticScene, Estimate, NematicScene, SweepSettings, estimate_nematic_sweep, estimate_sweep,
+};
+use topo_view::Quality;
+
+/// Stages of a command with what each is expected to take, as they follow each other; those with nothing to do are left out.
+pub type Stages = Vec<(&'static str, Estimate)>;
+
+const SHAPES: &str = "tight shapes";
+const FIGURES: &str = "drawing";
+const MOVIES: &str = "movies";
+
+/// The stages of a scene of rods: tight shapes, cases.
+pub fn of_elastic(
+    scene: &ElasticScene,
+    table: &KnotTable,
+    settings: &SweepSettings,
+) -> Result<Stages, CliError> {
+    let cases = estimate_sweep(scene, table, settings)?;
+    if cases.n_cases == 0 {
+        return Ok(Stages::new());
+    }
+    let names = knots_of(scene, table)?;
+    let shapes = Estimate::of_shapes(&names, table, &scene.tighten, &settings.out, settings.jobs)?;
+    Ok(worked([(SHAPES, shapes), ("cases", cases)]))
+}
+
+/// The stages of a scene of colloids: cases.
+pub fn of_nematic(scene: &NematicScene, settings: &SweepSettings) -> Result<Stages, CliError> {
+    Ok(worked([(
+        "cases",
+        estimate_nematic_sweep(scene, settings)?,
+    )]))
+}
+
+/// What the tables of an order are expected to take, and the drawing.
+pub fn of_order(order: &Order, settings: &SweepSettings) -> Result<Stages, CliError> {
+    let mut stages = Stages::new();
+    let table = order.table;
+    let scene = ElasticScene::published(order.quality.preset());
+    if (order.elastic || order.knots) && !order.as_is {
+        let shapes = |names: &[String], tighten| {
+            Estimate::of_shapes(names, table, tighten, order.results, order.jobs)
+        };
+        let names = knots_of(&scene, table)?;
+        let mut all = shapes(&names, &scene.tighten)?;
+        if order.knots {
+            let more = more_knots(order.quality, &names, table);
+            all = all.then(shapes(&more, &TightenSettings::standard())?);
+        }
+        stages.push((SHAPES, all));
+    }
+    if order.elastic {
+        stages.push(("elastic", estimate_sweep(&scene, table, settings)?));
+        let mut variants = Estimate::default();
+        for variant in scene.variants() {
+            variants = variants.then(estimate_sweep(&variant.scene, table, settings)?);
+        }
+        stages.push(("variants", variants));
+    }
+    if order.nematic {
+        let scene = NematicScene::published(order.quality.preset());
+        stages.push(("nematic", estimate_nematic_sweep(&scene, settings)?));
+    }
+    if order.shard.is_none() {
+        stages.extend(of_drawing(order));
+    }
+    Ok(worked(stages))
+}
+
+fn of_drawing(order: &Order) -> Stages {
+    let parts = |names: Vec<&str>| {
+        let of = |name: &&str| drawing_seconds(name) * drawing_factor(order.quality);
+        Estimate::of_parts(&names.iter().map(of).collect::<Vec<_>>(), order.jobs)
+    };
+    vec![
+        (
+            FIGURES,
+            parts(order.figures.iter().map(|f| f.name).collect()),
+        ),
+        (MOVIES, parts(order.movies.iter().map(|m| m.name).collect())),
+    ]
+}
+
+fn worked(stages: impl IntoIterator<Item = (&'static str, Estimate)>) -> Stages {
+    let stages = stages.into_iter();
+    stages.filter(|(_, e)| e.n_cases > 0).collect()
+}
+
+/// Processor seconds of figures and movies at draft quality on the models' machine.
+const DRAWING: [(&str, f64); 8] = [
+    ("elastic-configurations", 22.0),
+    ("elastic-charging", 3.0),
+    ("elastic-discharge", 4.2),
+    ("nematic-charging", 5.0),
+    ("nematic-discharge", 1.0),
+    ("knots-table", 5.6),
+    ("movie-elastic", 51.0),
+    ("movie-nematic", 82.0),
+];
+/// The same of one that was not measured.
+const OTHER_DRAWING: f64 = 5.0;
+
+fn drawing_seconds(name: &str) -> f64 {
+    let known = DRAWING.iter().find(|(known, _)| *known == name);
+    known.map_or(OTHER_DRAWING, |(_, seconds)| *seconds)
+}
+
+/// What drawing a finer sweep costs over drawing the draft: more edges, more cells, more cuts.
+fn drawing_factor(quality: Quality) -> f64 {
+    match quality {
+        Quality::Draft => 1.0,
+        Quality::Standard => 1.4,
+        Quality::Paper => 2.0,
+    }
+}
+
+/// Tells the estimate of a command on the terminal.
+pub fn tell(stages: &Stages) {
+    if let [(_, only)] = stages[..] {
+        note!("estimate: {}", text("cases", &only));
+        return;
+    }
+    for (name, estimate) in stages {
+        note!("estimate, {name}: {}", text(name, estimate));
+    }
+    if let Some(all) = together(stages) {
+        note!("estimate, together: {}", duration(all.wall_seconds));
+    }
+}
+
+/// All stages, one after the other; `None` where there is nothing to do.
+pub fn together(stages: &Stages) -> Option<Estimate> {
+    stages.iter().map(|(_, e)| *e).reduce(Estimate::then)
+}
+
+/// The estimate of a stage in words.
+fn text(stage: &str, e: &Estimate) -> String {
+    let part = match stage {
+        SHAPES => "knot",
+        FIGURES => "figure",
+        MOVIES => "movie",
+        _ => "case",
+    };
+    let plural = if e.n_cases == 1 { "" } else { "s" };
+    let mut text = format!(
+        "{} {part}{plural}, {} on {} threads ({} of one processor)",
+        e.n_cases,
+        duration(e.wall_seconds),
+        e.threads,
+        duration(e.cpu_seconds),
+    );
+    if e.bytes > 0 {
+        text += &format!(", up to {}", DecimalBytes(e.bytes));
+    }
+    if e.n_calibrated > 0 {
+        text += &format!(
+            "; speed of this machine from {} finished cases",
+            e.n_calibrated
+        );
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn estimates_are_told_in_fitting_units() {
+        let mut e = Estimate {
+            n_cases: 238,
+            cpu_seconds: 202.0,
+            wall_seconds: 109.0,
+            threads: 2,
+            bytes: 120_000_000,
+            ..Estimate::default()
+        };
+        assert_eq!(
+            text("elastic", &e),
+            "238 cases, 2 minutes on 2 threads (3 minutes of one processor), up to 120.00 MB"
+        );
+        e.n_calibrated = 7;
+        e.wall_seconds = 20_000.0;
+        e.bytes = 2_300_000_000;
+        let told = text(SHAPES, &e);
+        assert!(told.starts_with("238 knots, 6 hours") && told.contains("2.30 GB"));
+        assert!(told.contains("7 finished"));
+        for (seconds, words) in [
+            (0.2, "less than a second"),
+            (12.4, "12 seconds"),
+            (f64::INFINITY, "years"),
+        ] {
+            assert!(duration(seconds).contains(words), "{}", duration(seconds));
+        }
+    }
+
+    #[test]
+    fn every_figure_and_movie_has_its_cost() {
+        let figures = topo_view::figures::ALL.iter().map(|f| f.name);
+        let movies = topo_view::movies::ALL.iter().map(|m| m.name);
+        let mut drawn: Vec<&str> = figures.chain(movies).collect();
+        let mut known: Vec<&str> = DRAWING.iter().map(|(name, _)| *name).collect();
+        drawn.sort_unstable();
+        known.sort_unstable();
+        assert_eq!(drawn, known);
+    }
+
+    #[test]
+    fn a_scene_is_told_with_its_tight_shapes() {
+        let folder = tempfile::tempdir().unwrap();
+        let settings = SweepSettings {
+            jobs: 1,
+            ..SweepSettings::new(folder.path())
+        };
+        let mut scene = ElasticScene::published(topo_lab::Preset::Draft);
+        (scene.knots, scene.twists) = (vec!["3_1".to_owned()], vec![0.0, 1.0]);
+        let stages = of_elastic(&scene, &KnotTable::builtin(), &settings).unwrap();
+        let names: Vec<_> = stages.iter().map(|(name, e)| (*name, e.n_cases)).collect();
+        assert_eq!(names, [(SHAPES, 1), ("cases", 2)]);
+        let all = together(&stages).unwrap();
+        assert!(all.reference_seconds > stages[1].1.reference_seconds + 1.0);
+        // a shape that is kept, or not needed, costs nothing
+        let settings = SweepSettings {
+            only_finished: true,
+            ..settings
+        };
+        assert!(
+            of_elastic(&scene, &KnotTable::builtin(), &settings)
+                .unwrap()
+                .is_empty()
+        );
+    }
+}

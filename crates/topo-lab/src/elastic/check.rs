@@ -1,0 +1,225 @@
+//! What is refused of a scene of rods before anything runs.
+
+use std::collections::HashSet;
+
+use topo_knots::KnotTable;
+use topo_rod::{IntegratorKind, Reading, RodError};
+
+use super::case::ElasticCase;
+use super::cost::BYTES;
+use super::keys::{EDGES, ROD_KEYS};
+use super::scene::ElasticScene;
+use crate::LabError;
+use crate::scene::{AxisValue, Document, check_count, product};
+
+/// Prime knots of up to seven crossings, which "all" stands for.
+const ALL: usize = 14;
+/// Most closures of a sample: types are as good as certain with far fewer.
+const MOST_CLOSURES: usize = 100_000;
+/// Most memory of a case, in bytes.
+const MOST_BYTES: f64 = 16e9;
+
+/// Checks a scene; `poisson_ratio` is the one written, or the first of several.
+///
+/// # Errors
+/// File, line, key, value and what would be right.
+pub(super) fn check(
+    scene: &ElasticScene,
+    poisson_ratio: f64,
+    document: &Document<'_>,
+) -> Result<(), LabError> {
+    check_knots(scene, document)?;
+    let n_knots = scene.knots.iter().map(|k| if k == "all" { ALL } else { 1 });
+    let outer = [
+        ("rod.knot", n_knots.sum()),
+        ("rod.twist", scene.twists.len().max(1)),
+    ];
+    check_count(document, &outer, &scene.axes)?;
+    for nu in values(scene, "rod.poisson_ratio").unwrap_or(vec![poisson_ratio]) {
+        if !(nu > -1.0 && nu <= 0.5) {
+            let remedy = "a number above -1 and up to 0.5 is needed";
+            return Err(document.wrong("rod.poisson_ratio", nu, remedy));
+        }
+    }
+    for case in inner_cases(scene) {
+        check_case(scene, &case, document)?;
+    }
+    let refuse = |e| refused(document, e);
+    scene.accuracy.checked().map_err(refuse)?;
+    scene.charge.checked().map_err(refuse)?;
+    let has_twist = !scene.twists.is_empty();
+    scene.discharge.checked(has_twist).map_err(refuse)?;
+    let closures = scene.timeline.closures;
+    if closures > MOST_CLOSURES {
+        let remedy = format!("at most {MOST_CLOSURES} closures of each sample are looked at");
+        return Err(document.wrong("discharge.closures", closures, remedy));
+    }
+    for (key, reason) in idle(scene) {
+        document.idle(key, reason)?;
+    }
+    Ok(())
+}
+
+/// The cases of one knot at one twist.
+fn inner_cases(scene: &ElasticScene) -> Vec<ElasticCase> {
+    product(&ROD_KEYS, &scene.axes, scene.case("", None))
+}
+
+/// The numbers of an axis, if there is one of that key.
+fn values(scene: &ElasticScene, key: &str) -> Option<Vec<f64>> {
+    let axis = scene.axes.iter().find(|axis| axis.key() == key)?;
+    let number = |value: &AxisValue| match value {
+        AxisValue::Number(x) => Some(*x),
+        _ => None,
+    };
+    Some(axis.values().iter().filter_map(number).collect())
+}
+
+fn check_knots(scene: &ElasticScene, document: &Document<'_>) -> Result<(), LabError> {
+    let key = "rod.knot";
+    if scene.knots.is_empty() {
+        return Err(document.wrong(key, "[]", "name at least one knot, or write \"all\""));
+    }
+    if scene.knots.len() == 1 {
+        return Ok(());
+    }
+    let twice = |name: &str, knot: &str| {
+        document.wrong(
+            key,
+            name,
+            format!("{knot} is there already: name each knot once"),
+        )
+    };
+    let mut seen = HashSet::new();
+    if let Some(name) = scene.knots.iter().find(|name| !seen.insert(*name)) {
+        return Err(twice(name, name));
+    }
+    // what a folder of knots may call otherwise is looked at when the cases are made
+    if scene.own_knots.is_some() {
+        return Ok(());
+    }
+    let table = KnotTable::builtin();
+    let mut seen = HashSet::new();
+    for name in &scene.knots {
+        let meant: Vec<String> = match (name.as_str(), table.get(name)) {
+            ("all", _) => table.primes_up_to(7).map(|k| k.name.clone()).collect(),
+            (_, Ok(knot)) => vec![knot.name.clone()],
+            (_, Err(_)) => continue,
+        };
+        if let Some(knot) = meant.iter().find(|knot| !seen.insert((*knot).clone())) {
+            return Err(twice(name, knot));
+        }
+    }
+    Ok(())
+}
+
+fn check_case(
+    scene: &ElasticScene,
+    case: &ElasticCase,
+    document: &Document<'_>,
+) -> Result<(), LabError> {
+    if !(0.0..=0.5).contains(&case.imperfection) {
+        let remedy = "a number from 0 to 0.5 (in h) is needed";
+        return Err(document.wrong("rod.imperfection", case.imperfection, remedy));
+    }
+    let checked = case.rod.clone().checked();
+    checked.map_err(|e| refused(document, e))?;
+    let n_edges = case.rod.n_edges;
+    let bytes_of_edge = BYTES / 200.0;
+    if n_edges as f64 * bytes_of_edge > MOST_BYTES {
+        return Err(document.wrong(
+            EDGES,
+            n_edges,
+            format!(
+                "a case would take about {:.3e} GB of memory, and {} GB are the most: use at most {} edges",
+                n_edges as f64 * bytes_of_edge / 1e9,
+                MOST_BYTES / 1e9,
+                (MOST_BYTES / bytes_of_edge) as usize,
+            ),
+        ));
+    }
+    match scene.cuts.clash(n_edges) {
+        Some(remedy) => {
+            let cuts = String::from(scene.cuts.clone());
+            Err(document.wrong("discharge.cuts", cuts, remedy))
+        }
+        None => Ok(()),
+    }
+}
+
+/// What the rod refuses, with the key of the scene.
+fn refused(document: &Document<'_>, error: RodError) -> LabError {
+    match error {
+        RodError::Value(wrong) => {
+            let tables = ["accuracy.", "charge.", "discharge."];
+            let key = match tables.iter().any(|table| wrong.name.starts_with(table)) {
+                true => wrong.name,
+                false => format!("rod.{}", wrong.name),
+            };
+            document.wrong(&key, wrong.value, format!("expected {}", wrong.expected))
+        }
+        RodError::TooFewEdges { n_edges, least } => {
+            document.wrong(EDGES, n_edges, format!("use at least {least} edges"))
+        }
+        RodError::Ends { reason } => {
+            let key = "discharge.ends";
+            document.wrong(key, document.written(key), reason)
+        }
+        source => LabError::Rod {
+            case: document.path().display().to_string(),
+            source,
+        },
+    }
+}
+
+/// Keys that change nothing in this scene, with the reason and the remedy.
+pub(super) fn idle(scene: &ElasticScene) -> Vec<(&'static str, &'static str)> {
+    let cases = inner_cases(scene);
+    let swept = |key: &str| scene.axes.iter().any(|axis| axis.key().starts_with(key));
+    // a key with one value must act in some case, one with several in all
+    let acts = |key: &str, of: &dyn Fn(&ElasticCase) -> bool| match swept(key) {
+        true => cases.iter().all(of),
+        false => cases.iter().any(of),
+    };
+    let mut idle = Vec::new();
+    let mut unless = |acts: bool, key: &'static str, reason: &'static str| {
+        if !acts {
+            idle.push((key, reason));
+        }
+    };
+    let key = "rod.slenderness";
+    unless(
+        acts(key, &|c| c.rod.reading != Reading::OwnLength),
+        key,
+        "it changes nothing: with the reading `own-length` a rod has its knot's own length; leave it out",
+    );
+    unless(
+        !scene.twists.is_empty(),
+        "rod.poisson_ratio",
+        "it changes nothing: no twist is modelled; give `twist`, or leave it out",
+    );
+    let key = "rod.seed";
+    unless(
+        scene.timeline.closures > 0 || acts(key, &|c| c.imperfection > 0.0),
+        key,
+        "it changes nothing: there are no closures and no imperfection; leave it out",
+    );
+    let key = "rod.friction.range";
+    unless(
+        acts(key, &|c| c.rod.friction.is_none_or(|f| f.ratio > 0.0)),
+        key,
+        "it changes nothing where the friction has the ratio 0; leave it out",
+    );
+    let integrator = scene.accuracy.integrator;
+    unless(
+        integrator == IntegratorKind::Ros2w,
+        "accuracy.gamma",
+        "it changes nothing: it belongs to `integrator = \"ros2w\"`; leave it out",
+    );
+    unless(
+        integrator != IntegratorKind::Rkc2,
+        "accuracy.reuse",
+        "it changes nothing: the explicit integrator has no Newton matrix; leave it out",
+    );
+    idle
+}

@@ -1,0 +1,50 @@
+//! What the numbers of a case depend on.
+
+use serde_json::json;
+use topo_knots::{Chirality, KnotEntry};
+use topo_rod::Guards;
+
+use super::case::ElasticCase;
+use super::scene::ElasticScene;
+use crate::folder::identity;
+
+/// Changes whenever the same scene gives other numbers than before; finished cases of another version are computed again.
+pub const RESULTS_VERSION: u32 = 5;
+
+/// Identity of a case: everything that its numbers depend on.
+pub(crate) fn fingerprint(scene: &ElasticScene, case: &ElasticCase, entry: &KnotEntry) -> String {
+    let mut all = json!({
+        "version": RESULTS_VERSION, "case": case, "knot": entry, "tighten": scene.tighten, "imperfection": case.imperfection,
+        "seed": case.seed, "charge": scene.charge, "cuts": scene.cuts, "discharge": scene.discharge,
+        "timeline": scene.timeline, "accuracy": scene.accuracy, "guards": Guards::default(),
+    });
+    if starts_from_two_images(case, entry) {
+        all["images"] = 2.into();
+    }
+    if let Some(cuts) = &scene.fixed_cuts {
+        all["fixed_cuts"] = json!(cuts.get(&case.state()));
+    }
+    identity(&all)
+}
+
+/// What the numbers of a case depend on besides the case, its imperfection and seed.
+pub(super) fn settings_of(scene: &ElasticScene, case: &ElasticCase) -> serde_json::Value {
+    let fixed = scene
+        .fixed_cuts
+        .as_ref()
+        .map(|cuts| cuts.get(&case.state()));
+    json!([
+        scene.tighten,
+        scene.charge,
+        scene.cuts,
+        scene.discharge,
+        scene.timeline,
+        scene.accuracy,
+        fixed
+    ])
+}
+
+/// Whether a twisted rod may start from the tight curve or from its mirror image, being the same knot.
+pub(super) fn starts_from_two_images(case: &ElasticCase, entry: &KnotEntry) -> bool {
+    entry.chirality == Chirality::Amphichiral && case.rod.twist.is_some_and(|twist| twist != 0.0)
+}

@@ -1,0 +1,210 @@
+//! What tells the cases of elastic scenes apart: the names of their folders and the settings in their rows.
+
+use serde_json::json;
+use topo_rod::{FrictionRange, RodParameters};
+
+use super::case::ElasticCase;
+use super::identity::settings_of;
+use super::scene::{ElasticScene, OwnKnots};
+use crate::preset::Preset;
+use crate::sweep::{CaseName, Row, value};
+use topo_analysis::SweepRow;
+
+impl ElasticScene {
+    /// Name of a case's folder, such as `3_1_twist+0.00_shrunk_n200`: of no other case, whatever the scene.
+    ///
+    /// What differs from the published settings of the preset is added in words, or as a fingerprint.
+    ///
+    /// # Validation
+    /// `elastic_names_are_injective`
+    pub fn case_name(&self, case: &ElasticCase) -> String {
+        let rod = &case.rod;
+        let usual = Self::published(self.preset);
+        let name = CaseName::of(&case.knot);
+        let name = match rod.twist {
+            None => name.word("untwisted"),
+            Some(twist) => name.signed("twist", twist),
+        };
+        let name = name
+            .word(rod.reading.name())
+            .word(&format!("n{}", rod.n_edges));
+        let name = match self.preset {
+            Preset::Draft => name,
+            other => name.word(other.name()),
+        };
+        let said = RodParameters {
+            twist: rod.twist,
+            reading: rod.reading,
+            n_edges: rod.n_edges,
+            ..usual.rod.clone()
+        };
+        name.changes(&value(rod), &value(&said), &[])
+            .changes(
+                &json!({"imperfection": case.imperfection, "seed": case.seed}),
+                &json!({"imperfection": usual.imperfection, "seed": usual.seed}),
+                &[],
+            )
+            .unsaid(&settings_of(self, case), &settings_of(&usual, case))
+            .finish(|| json!([case, case.imperfection, case.seed, settings_of(self, case)]))
+    }
+
+    /// A row of a case with its settings only.
+    pub(super) fn blank_row(&self, case: &ElasticCase) -> SweepRow {
+        let rod = &case.rod;
+        SweepRow {
+            case: self.case_name(case),
+            knot: case.knot.clone(),
+            twist: rod.twist.unwrap_or(0.0),
+            reading: rod.reading.name().to_owned(),
+            edges: rod.n_edges,
+            slenderness: rod.slenderness,
+            twist_ratio: rod.twist_ratio,
+            stretch_ratio: rod.stretch_ratio,
+            contact_stiffness: rod.contact.map(|c| c.stiffness),
+            friction_ratio: rod.friction.map(|f| f.ratio),
+            friction_range: rod.friction.map(|f| match f.range {
+                FrictionRange::Reading => "reading".to_owned(),
+                FrictionRange::Contact => "contact".to_owned(),
+                FrictionRange::TimesContact(x) => x.to_string(),
+            }),
+            imperfection: case.imperfection,
+            seed: case.seed,
+            tolerance: self.accuracy.tolerance,
+            ..SweepRow::default()
+        }
+    }
+
+    /// The scene as [`text`](Self::text) with the settings themselves where a wish picked them.
+    pub fn resolved_text(&self) -> String {
+        // the folder of knots is named so that it is found from anywhere
+        let own_knots = self.own_knots.as_ref().map(OwnKnots::path);
+        let own_knots = own_knots.map(|path| std::path::absolute(&path).unwrap_or(path));
+        let scene = Self {
+            wish: None,
+            own_knots: own_knots.as_deref().map(OwnKnots::at),
+            ..self.clone()
+        };
+        scene.text()
+    }
+}
+
+impl Row for SweepRow {
+    fn cpu_seconds(&self) -> f64 {
+        self.cpu_seconds
+    }
+
+    fn warnings(&self) -> &str {
+        &self.warnings
+    }
+
+    fn with_settings_of(self, blank: &Self) -> Self {
+        let blank = blank.clone();
+        Self {
+            case: blank.case,
+            slenderness: blank.slenderness,
+            twist_ratio: blank.twist_ratio,
+            stretch_ratio: blank.stretch_ratio,
+            contact_stiffness: blank.contact_stiffness,
+            friction_ratio: blank.friction_ratio,
+            friction_range: blank.friction_range,
+            imperfection: blank.imperfection,
+            seed: blank.seed,
+            tolerance: blank.tolerance,
+            ..self
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use topo_rod::Reading;
+
+    use super::*;
+    use crate::elastic::Cuts;
+
+    /// Each setting of a scene changed by itself, by a round number and by the least that a number can change.
+    #[test]
+    fn elastic_names_are_injective() {
+        let base = ElasticScene::published(Preset::Draft);
+        let mut names: BTreeMap<String, usize> = BTreeMap::new();
+        let mut see = |scene: &ElasticScene, twist: Option<f64>| {
+            let name = scene.case_name(&scene.case("3_1", twist));
+            assert!(name.len() < 100 && !name.contains(['/', ' ']), "{name}");
+            *names.entry(name).or_default() += 1;
+        };
+        let above = |x: f64| f64::from_bits(x.to_bits() + 1);
+        for twist in [
+            0.0,
+            -0.0,
+            1.0,
+            1.001,
+            1.004,
+            above(1.0),
+            -0.0075,
+            1.0 / 3.0,
+            above(1.0 / 3.0),
+            1e-9,
+            1e9,
+        ] {
+            see(&base, Some(twist));
+        }
+        see(&base, None);
+        type Change = dyn Fn(&mut ElasticScene, f64);
+        let change: &[&Change] = &[
+            &|s, f| s.rod.slenderness *= f,
+            &|s, f| s.rod.twist_ratio *= f,
+            &|s, f| s.rod.stretch_ratio *= f,
+            &|s, f| s.rod.contact.as_mut().unwrap().stiffness *= f,
+            &|s, f| s.rod.friction.as_mut().unwrap().ratio *= f,
+            &|s, f| s.rod.friction.as_mut().unwrap().range = FrictionRange::TimesContact(f),
+            &|s, f| s.imperfection *= f,
+            &|s, f| s.charge.duration *= f,
+            &|s, f| s.discharge.until_released *= f,
+            &|s, f| s.discharge.longest *= f,
+            &|s, f| s.accuracy.tolerance *= f,
+            &|s, f| s.accuracy.gamma *= f,
+        ];
+        for change in change {
+            for factor in [0.5, 0.75, 1.0 / 3.0, above(1.0)] {
+                let mut scene = base.clone();
+                change(&mut scene, factor);
+                see(&scene, Some(0.0));
+                // together with another one
+                scene.rod.slenderness += 1.0;
+                see(&scene, Some(0.25));
+            }
+        }
+        let change: &[&dyn Fn(&mut ElasticScene)] = &[
+            &|s| s.rod.contact = None,
+            &|s| s.rod.friction = None,
+            &|s| (s.rod.contact, s.rod.friction) = (None, None),
+            &|s| s.rod.friction.as_mut().unwrap().range = FrictionRange::Contact,
+            &|s| s.rod.n_edges = 100,
+            &|s| s.rod.reading = Reading::Hard,
+            &|s| s.seed = 7,
+            &|s| s.cuts = Cuts::NearTies,
+            &|s| s.cuts = Cuts::All(3),
+            &|s| s.timeline.closures = 0,
+            &|s| s.accuracy.reuse = 1,
+            &|s| *s = ElasticScene::published(Preset::Standard),
+            &|s| *s = ElasticScene::published(Preset::Paper),
+            &|s| s.fixed_cuts = Some(BTreeMap::from([("3_1 0".to_owned(), vec![0.5])])),
+        ];
+        for change in change {
+            let mut scene = base.clone();
+            change(&mut scene);
+            see(&scene, Some(0.0));
+        }
+        assert!(names.values().all(|n| *n == 1), "{names:#?}");
+        assert_eq!(names.len(), 12 + 12 * 8 + 14);
+        for plain in [
+            "3_1_twist+0.00_shrunk_n200",
+            "3_1_untwisted_shrunk_n200",
+            "3_1_twist+0.00_shrunk_n200_standard",
+        ] {
+            assert!(names.contains_key(plain), "{plain}");
+        }
+    }
+}

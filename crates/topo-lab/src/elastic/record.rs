@@ -1,0 +1,241 @@
+//! The folder of a case: charged state, series, snapshots, and `run.json` that marks it complete.
+
+use std::path::Path;
+
+use serde::Serialize;
+use serde_json::json;
+use topo_core::write_atomic_bytes;
+use topo_rod::{ChargedRod, Guards, RodSample, energy_density};
+
+use super::identity::{RESULTS_VERSION, fingerprint};
+use super::job::{CaseJob, FollowedCut};
+use crate::LabError;
+use crate::folder::{Outcome, digests, forget_file, make_folder};
+use topo_analysis::Timeline;
+use topo_analysis::{SweepRow, write_table};
+
+/// Everything that a case has made.
+#[derive(Clone, Copy)]
+pub(super) struct MadeCase<'a> {
+    pub job: &'a CaseJob<'a>,
+    pub charged: &'a ChargedRod,
+    pub runs: &'a [FollowedCut],
+    pub outcome: &'a Outcome<SweepRow>,
+    pub charge_seconds: f64,
+}
+
+/// A vertex of the charged rod.
+#[derive(Serialize)]
+struct ChargedVertex {
+    s: f64,
+    x: f64,
+    y: f64,
+    z: f64,
+    twist: f64,
+    energy_density: f64,
+}
+
+/// A vertex of the open rod at one time.
+#[derive(Serialize)]
+struct SnapshotVertex {
+    cut: f64,
+    time: f64,
+    s: f64,
+    x: f64,
+    y: f64,
+    z: f64,
+    energy_density: f64,
+    twist: f64,
+}
+
+/// The open or closed rod at an output time.
+#[derive(Serialize)]
+struct SeriesRow<'a> {
+    cut: Option<f64>,
+    time: f64,
+    energy: f64,
+    bend: f64,
+    twist_energy: f64,
+    stretch: f64,
+    contact_energy: f64,
+    dissipated_viscosity: f64,
+    dissipated_twist: f64,
+    dissipated_friction: f64,
+    work: f64,
+    writhe: f64,
+    total_twist: f64,
+    n_contacts: usize,
+    min_distance: Option<f64>,
+    end_to_end: f64,
+    knot: &'a str,
+    knot_probability: Option<f64>,
+}
+
+fn series_row<'a>(
+    cut: Option<f64>,
+    s: &RodSample,
+    timeline: Option<(&'a Timeline, usize)>,
+) -> SeriesRow<'a> {
+    let typed = timeline.and_then(|(t, k)| t.at(k));
+    SeriesRow {
+        cut,
+        time: s.time,
+        energy: s.elastic(),
+        bend: s.stored[0],
+        twist_energy: s.stored[1],
+        stretch: s.stored[2],
+        contact_energy: s.stored[3],
+        dissipated_viscosity: s.dissipated[0],
+        dissipated_twist: s.dissipated[1],
+        dissipated_friction: s.dissipated[2],
+        work: s.work,
+        writhe: s.writhe,
+        total_twist: s.total_twist,
+        n_contacts: s.n_contacts,
+        min_distance: s.min_distance,
+        end_to_end: s.end_to_end,
+        knot: typed.map_or("", |t| &t.knot),
+        knot_probability: typed.map(|t| t.probability),
+    }
+}
+
+/// Energies relative to that before the cut at which the shape is kept.
+const SNAPSHOT_SHARES: [f64; 11] = [1.0, 0.9, 0.75, 0.5, 0.35, 0.2, 0.1, 0.05, 0.02, 0.01, 0.002];
+
+fn snapshot_indices(samples: &[RodSample], start: f64) -> Vec<usize> {
+    if samples.is_empty() {
+        return Vec::new();
+    }
+    let mut indices: Vec<usize> = SNAPSHOT_SHARES
+        .iter()
+        .filter_map(|share| samples.iter().position(|s| s.elastic() <= share * start))
+        .chain([samples.len() - 1])
+        .collect();
+    indices.dedup();
+    indices
+}
+
+/// Writes the folder of a case; what is there of an earlier run is replaced.
+pub(super) fn write_case(made: &MadeCase<'_>, folder: &Path) -> Result<(), LabError> {
+    let MadeCase {
+        job,
+        charged,
+        runs,
+        outcome,
+        charge_seconds,
+    } = *made;
+    let rows = &outcome.rows;
+    let CaseJob {
+        scene,
+        case,
+        tight,
+        table,
+    } = *job;
+    let area = std::f64::consts::PI;
+    make_folder(folder)?;
+    // the mark of completeness of an earlier run goes first, so that a folder never mixes two
+    forget_file(&folder.join("run.json"))?;
+    let state = charged.state();
+    let vertices: Vec<ChargedVertex> = (0..state.n_vertices())
+        .map(|i| {
+            let x = state.vertices()[i];
+            let (s, density) = (i as f64 * state.rest_length(), charged.density()[i] * area);
+            ChargedVertex {
+                s,
+                x: x.x,
+                y: x.y,
+                z: x.z,
+                twist: state.twists()[i] / state.rest_length(),
+                energy_density: density,
+            }
+        })
+        .collect();
+    write_table(&folder.join("charged.csv"), &vertices)?;
+    let series: Vec<_> = charged
+        .record()
+        .samples
+        .iter()
+        .map(|s| series_row(None, s, None))
+        .collect();
+    write_table(&folder.join("charge.csv"), &series)?;
+    let mut series = Vec::new();
+    let mut snapshots = Vec::new();
+    for FollowedCut {
+        discharge,
+        timeline,
+        ..
+    } in runs
+    {
+        let samples = &discharge.record.samples;
+        series.extend(
+            samples
+                .iter()
+                .enumerate()
+                .map(|(k, s)| series_row(Some(discharge.at), s, Some((timeline, k)))),
+        );
+        for k in snapshot_indices(samples, discharge.start) {
+            let state = &samples[k].state;
+            let density = energy_density(&case.rod, state);
+            snapshots.extend(
+                state
+                    .vertices()
+                    .iter()
+                    .enumerate()
+                    .map(|(i, x)| SnapshotVertex {
+                        cut: discharge.at,
+                        time: samples[k].time,
+                        s: i as f64 * state.rest_length(),
+                        x: x.x,
+                        y: x.y,
+                        z: x.z,
+                        energy_density: density[i] * area,
+                        twist: state.twists()[i] / state.rest_length(),
+                    }),
+            );
+        }
+    }
+    write_table(&folder.join("series.csv"), &series)?;
+    write_table(&folder.join("snapshots.csv"), &snapshots)?;
+    let entry = table.get(&case.knot)?;
+    let cuts: Vec<_> = runs
+        .iter()
+        .map(|FollowedCut { discharge: d, times, times_after_cut, timeline, row }| {
+            json!({
+                "cut": d.at, "energy_removed_by_cut": d.removed, "elastic_energy_before_cut": d.start, "elastic_energy_after_cut": d.after_cut,
+                "tips_parted": d.parted, "times": times, "times_after_cut": times_after_cut, "knot_sequence": timeline.sequence(), "t_untie": row.t_untie, "report": d.record.report,
+                "warnings": row.warnings,
+            })
+        })
+        .collect();
+    let ledger_residual = runs
+        .iter()
+        .map(|r| r.discharge.record.report.ledger_residual)
+        .fold(charged.record().report.ledger_residual, f64::max);
+    let run = json!({
+        "schema": "topo-elastic-case/1",
+        "fingerprint": fingerprint(scene, case, &entry),
+        "case": case,
+        "scene": scene,
+        "seed": case.seed,
+        "versions": { "topo": env!("CARGO_PKG_VERSION"), "results": RESULTS_VERSION },
+        "units": { "length": "h", "time": "T_0 = 2 L eta/(h E_b)", "energy": "E_0 = E_b h^2 L" },
+        "tube": charged.battery().tube(),
+        "start": { "length_over_radius": tight.length_over_radius, "knot": entry },
+        "guards": Guards::default(),
+        "ledger_residual": ledger_residual,
+        "charge": charged.record().report,
+        "cuts": cuts,
+        "rows": rows,
+        "failure": outcome.failure,
+        "files": digests(folder, &["charged.csv", "charge.csv", "series.csv", "snapshots.csv"]),
+        "warnings": rows.iter().map(|r| &r.warnings).filter(|w| !w.is_empty()).collect::<Vec<_>>(),
+        "timings": { "charge_cpu_seconds": charge_seconds, "cpu_seconds": rows.iter().map(|r| r.cpu_seconds).sum::<f64>() },
+    });
+    // written last: a folder with this file is complete
+    let mut text = serde_json::to_string_pretty(&run).unwrap_or_default();
+    text.push('\n');
+    Ok(write_atomic_bytes(
+        &folder.join("run.json"),
+        text.as_bytes(),
+    )?)
+}

@@ -1,0 +1,233 @@
+//! An elastic experiment and the cases it stands for.
+
+use std::collections::{BTreeMap, HashSet};
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+use topo_knots::{KnotTable, TightenSettings};
+use topo_rod::{Accuracy, ChargeSettings, DischargeSettings, RodParameters};
+
+use super::case::ElasticCase;
+use super::choices::Cuts;
+use super::defaults;
+use super::keys::{EDGES, ROD_KEYS};
+use crate::LabError;
+use crate::preset::Preset;
+use crate::scene::{Axis, Numbers, product};
+use crate::wish::Wish;
+use topo_analysis::TimelineSettings;
+
+/// An elastic experiment: which knots, how twisted, how cut, how accurately.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ElasticScene {
+    /// Folder of its tables below the output folder.
+    pub folder: String,
+    /// Knot names; "all" stands for the fourteen prime knots of up to seven crossings.
+    pub knots: Vec<String>,
+    /// θ'h of the cases; empty: no twist is modelled.
+    pub twists: Vec<f64>,
+    /// Material, reading and resolution, its twist not yet set.
+    pub rod: RodParameters,
+    /// Size of the random perturbation of the start curve, in h: symmetric states that are unstable are left by it.
+    pub imperfection: f64,
+    /// Seed of that perturbation and of the closures.
+    pub seed: u64,
+    /// Relaxation of the closed rod.
+    pub charge: ChargeSettings,
+    /// Sites cut.
+    pub cuts: Cuts,
+    /// Discharge of the open rod.
+    pub discharge: DischargeSettings,
+    /// Knot types while open.
+    pub timeline: TimelineSettings,
+    /// Integrator and tolerance.
+    pub accuracy: Accuracy,
+    /// Keys with several values: the cases are their product, the last axis running fastest.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub axes: Vec<Axis>,
+    /// Folder of knots besides the built-in ones.
+    #[serde(skip)]
+    pub own_knots: Option<OwnKnots>,
+    /// Preset that the numbers started from.
+    pub preset: Preset,
+    /// How the start shapes are tightened.
+    pub tighten: TightenSettings,
+    /// What was asked for instead of settings.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub wish: Option<Wish>,
+    /// Places of the cuts by [`ElasticCase::state`], instead of `cuts`: those of another run.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fixed_cuts: Option<BTreeMap<String, Vec<f64>>>,
+}
+
+/// A folder of knot files that a scene names.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct OwnKnots {
+    /// As the scene has it, relative to the scene's file.
+    pub(super) written: String,
+    /// Where the scene's file lies.
+    pub(super) beside: PathBuf,
+}
+
+impl OwnKnots {
+    /// A folder as a command line names it.
+    pub fn at(folder: &Path) -> Self {
+        Self {
+            written: folder.display().to_string(),
+            beside: PathBuf::new(),
+        }
+    }
+
+    /// Where the folder is.
+    pub fn path(&self) -> PathBuf {
+        self.beside.join(&self.written)
+    }
+}
+
+impl ElasticCase {
+    /// The charged state, whatever the resolution: knot, twist, and what is not as published.
+    pub fn state(&self) -> String {
+        let mut name = format!("{} {}", self.knot, self.rod.twist.unwrap_or(0.0));
+        let published = ElasticScene::published(Preset::default()).case(&self.knot, None);
+        for key in ROD_KEYS.iter().filter(|key| key.key != EDGES) {
+            match key.read(self) {
+                Some(value) if key.read(&published).as_ref() != Some(&value) => {
+                    name.push_str(&format!(" {}={value}", key.key));
+                }
+                _ => {}
+            }
+        }
+        name
+    }
+}
+
+impl ElasticScene {
+    /// The published sweep: 14 knots at 17 twists.
+    pub fn published(preset: Preset) -> Self {
+        Self {
+            folder: "elastic".to_owned(),
+            knots: vec!["all".to_owned()],
+            twists: Numbers::Range {
+                from: -2.0,
+                to: 2.0,
+                n: 17,
+            }
+            .values(),
+            rod: RodParameters {
+                n_edges: preset.edges(),
+                ..RodParameters::default()
+            },
+            imperfection: defaults::imperfection(),
+            seed: defaults::seed(),
+            charge: ChargeSettings::default(),
+            cuts: preset.cuts(),
+            discharge: DischargeSettings::default(),
+            timeline: TimelineSettings::default(),
+            accuracy: preset.accuracy(),
+            axes: Vec::new(),
+            own_knots: None,
+            preset,
+            tighten: preset.tighten(),
+            wish: None,
+            fixed_cuts: None,
+        }
+    }
+
+    /// The built-in knots with those of the folder that the scene names.
+    ///
+    /// # Errors
+    /// A folder that cannot be read, or a file in it that is no knot.
+    pub fn knot_table(&self) -> Result<KnotTable, LabError> {
+        let folder = self.own_knots.as_ref().map(OwnKnots::path);
+        Ok(KnotTable::builtin_and(folder.as_deref())?)
+    }
+
+    /// The cases of the scene: knots in the order given, twists inside, the values of the [axes](Self::axes) innermost.
+    ///
+    /// # Errors
+    /// An unknown knot, or one that is there twice, be it by an alias or besides \"all\".
+    pub fn cases(&self, table: &KnotTable) -> Result<Vec<ElasticCase>, LabError> {
+        let mut names: Vec<String> = Vec::new();
+        let mut seen = HashSet::new();
+        for name in &self.knots {
+            let meant = if name == "all" {
+                let primes = table.primes_up_to(7);
+                primes.map(|knot| knot.name.clone()).collect()
+            } else {
+                vec![table.get(name)?.name.clone()]
+            };
+            if let Some(twice) = meant.iter().find(|knot| !seen.insert((*knot).clone())) {
+                return Err(LabError::SceneValue {
+                    path: PathBuf::from(&self.folder),
+                    line: None,
+                    key: "rod.knot".to_owned(),
+                    value: name.clone(),
+                    remedy: format!("{twice} is there already: name each knot once"),
+                });
+            }
+            names.extend(meant);
+        }
+        let twists: Vec<Option<f64>> = if self.twists.is_empty() {
+            vec![None]
+        } else {
+            self.twists.iter().copied().map(Some).collect()
+        };
+        Ok(names
+            .iter()
+            .flat_map(|knot| twists.iter().map(move |t| self.case(knot, *t)))
+            .flat_map(|case| product(&ROD_KEYS, &self.axes, case))
+            .collect())
+    }
+
+    /// The case of one knot at one twist; without a twist, none is modelled.
+    pub(crate) fn case(&self, knot: &str, twist: Option<f64>) -> ElasticCase {
+        ElasticCase {
+            knot: knot.to_owned(),
+            rod: RodParameters {
+                twist,
+                ..self.rod.clone()
+            },
+            imperfection: self.imperfection,
+            seed: self.seed,
+        }
+    }
+
+    /// The scene with other cuts.
+    ///
+    /// # Errors
+    /// Cuts that fall on one vertex of a rod, and what would be right.
+    pub fn with_cuts(mut self, cuts: Cuts) -> Result<Self, String> {
+        for case in product(&ROD_KEYS, &self.axes, self.case("", None)) {
+            cuts.clash(case.rod.n_edges).map_or(Ok(()), Err)?;
+        }
+        self.cuts = cuts;
+        Ok(self)
+    }
+
+    /// Where files with the scene's tables lie below an output folder.
+    pub fn results(&self, out: &Path) -> PathBuf {
+        out.join(&self.folder)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_published_sweep_has_238_cases() {
+        let scene = ElasticScene::published(Preset::Draft);
+        let cases = scene.cases(&topo_knots::KnotTable::builtin()).unwrap();
+        assert_eq!(cases.len(), 238);
+        assert_eq!(scene.case_name(&cases[8]), "3_1_twist+0.00_shrunk_n200");
+        // 14 knots at θ'h = −2, −1.75, ..., 2, of the published material
+        let twists = cases.iter().map(|case| case.rod.twist.unwrap());
+        let quarters = (0..238).map(|k| f64::from(k % 17 - 8) / 4.0);
+        assert!(twists.eq(quarters));
+        let published = |case: &ElasticCase| RodParameters {
+            twist: case.rod.twist,
+            ..RodParameters::default()
+        };
+        assert!(cases.iter().all(|case| case.rod == published(case)));
+    }
+}

@@ -1,0 +1,243 @@
+//! Scenes beside the published sweep: what its outcome depends on, and the end of a discharge.
+
+use topo_rod::{ContactParameters, FrictionParameters, FrictionRange, Reading};
+
+use super::choices::Cuts;
+use super::scene::ElasticScene;
+use crate::preset::Preset;
+
+/// What a scene beside the sweep is run for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Purpose {
+    /// Another choice of friction range or reading: what is slow under each of them is slow for its knot type.
+    Choice,
+    /// A member of the study of friction.
+    Friction,
+    /// The last of the energy.
+    End,
+}
+
+/// A scene beside the sweep; its tables lie in a folder of their own.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Variant {
+    /// What is chosen differently, in words.
+    pub name: String,
+    /// What it is run for.
+    pub purpose: Purpose,
+    /// What is run.
+    pub scene: ElasticScene,
+}
+
+/// Stiffnesses k_c of the study beside the default of 20.
+const STIFFNESSES: [f64; 2] = [5.0, 100.0];
+/// Friction ranges of the study over the contact diameter; 1 is a [`Purpose::Choice`] already.
+const RANGES: [f64; 3] = [1.1, 1.2, 1.3];
+/// η_f/η of the study beside the default of 0.1.
+const RATIOS: [f64; 2] = [0.0, 1.0];
+/// Share of the energy after which the last mode is alone: modes next to it decay at least four times as fast.
+const LAST_SHARE: f64 = 0.99999;
+
+impl ElasticScene {
+    /// The scenes run beside this sweep: the untwisted knots under four other choices, all knots at five twists followed to
+    /// 99.999 %, and beyond draft the untwisted knots, cut once, in a study of friction.
+    pub fn variants(&self) -> Vec<Variant> {
+        let mut variants = vec![Variant {
+            name: "friction range of the contact diameter".to_owned(),
+            purpose: Purpose::Choice,
+            scene: self.with_friction("elastic-contact-range", |_, friction| {
+                friction.range = FrictionRange::Contact;
+            }),
+        }];
+        for reading in [Reading::Tight, Reading::Hard, Reading::OwnLength] {
+            let mut scene = self.untwisted(&format!("elastic-{}", reading.name()));
+            scene.rod.reading = reading;
+            variants.push(Variant {
+                name: format!("reading “{}”", reading.name()),
+                purpose: Purpose::Choice,
+                scene,
+            });
+        }
+        variants.push(self.last());
+        if self.preset != Preset::Draft {
+            variants.extend(self.friction_study());
+        }
+        variants
+    }
+
+    /// One friction parameter at a time; where friction acts in the overlap only, the stiffness sets it, so that both extremes are
+    /// run there too.
+    fn friction_study(&self) -> Vec<Variant> {
+        let mut variants = Vec::new();
+        let mut add =
+            |name: String,
+             folder: &str,
+             change: &dyn Fn(&mut ContactParameters, &mut FrictionParameters)| {
+                let mut scene = self.with_friction(&format!("elastic-friction-{folder}"), change);
+                scene.cuts = Cuts::Argmax;
+                variants.push(Variant {
+                    name,
+                    purpose: Purpose::Friction,
+                    scene,
+                });
+            };
+        for k in STIFFNESSES {
+            add(
+                format!("stiffness {k}"),
+                &format!("stiffness-{k}"),
+                &|contact, _| contact.stiffness = k,
+            );
+        }
+        for r in RANGES {
+            add(
+                format!("range {r} d_c"),
+                &format!("range-{r}"),
+                &|_, friction| friction.range = FrictionRange::TimesContact(r),
+            );
+        }
+        for ratio in RATIOS {
+            add(
+                format!("η_f/η = {ratio}"),
+                &format!("ratio-{ratio}"),
+                &|_, friction| friction.ratio = ratio,
+            );
+        }
+        for k in STIFFNESSES {
+            add(
+                format!("range d_c, stiffness {k}"),
+                &format!("range-1-stiffness-{k}"),
+                &|contact, friction| {
+                    contact.stiffness = k;
+                    friction.range = FrictionRange::Contact;
+                },
+            );
+        }
+        variants
+    }
+
+    /// Discharges followed until one mode is left.
+    fn last(&self) -> Variant {
+        let mut scene = Self {
+            folder: "elastic-last".to_owned(),
+            twists: vec![-2.0, -1.0, 0.0, 1.0, 2.0],
+            cuts: Cuts::Argmax,
+            ..self.clone()
+        };
+        scene.discharge.until_released = LAST_SHARE;
+        // types are told by the sweep
+        scene.timeline.closures = 0;
+        Variant {
+            name: "followed to 99.999 %".to_owned(),
+            purpose: Purpose::End,
+            scene,
+        }
+    }
+
+    fn untwisted(&self, folder: &str) -> Self {
+        Self {
+            folder: folder.to_owned(),
+            twists: vec![0.0],
+            ..self.clone()
+        }
+    }
+
+    fn with_friction(
+        &self,
+        folder: &str,
+        change: impl Fn(&mut ContactParameters, &mut FrictionParameters),
+    ) -> Self {
+        let mut scene = self.untwisted(folder);
+        if let (Some(contact), Some(friction)) = (&mut scene.rod.contact, &mut scene.rod.friction) {
+            change(contact, friction);
+        }
+        scene
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(preset: Preset, purpose: Purpose) -> Vec<ElasticScene> {
+        let all = ElasticScene::published(preset).variants();
+        let wanted = all.into_iter().filter(|v| v.purpose == purpose);
+        wanted.map(|v| v.scene).collect()
+    }
+
+    #[test]
+    fn the_other_choices_are_run_at_every_preset() {
+        for preset in [Preset::Draft, Preset::Standard, Preset::Paper] {
+            let choices = of(preset, Purpose::Choice);
+            assert!(choices.iter().all(|v| v.twists == [0.0]));
+            let tubes = choices.iter().map(|v| v.rod.tube(60.0).unwrap());
+            let tubes: Vec<_> = tubes
+                .map(|t| (t.length, t.contact_diameter, t.friction_range))
+                .collect();
+            let d = 2.0 * 50.0 / 60.0;
+            assert_eq!(
+                tubes,
+                [
+                    (50.0, d, d),
+                    (50.0, d, d),
+                    (50.0, 2.0, 2.0),
+                    (60.0, 2.0, 2.0)
+                ]
+            );
+        }
+    }
+
+    #[test]
+    fn the_study_of_friction_changes_what_it_says_and_nothing_else() {
+        assert!(of(Preset::Draft, Purpose::Friction).is_empty());
+        let study = of(Preset::Standard, Purpose::Friction);
+        let seen: Vec<(f64, f64, f64)> = study
+            .iter()
+            .map(|v| {
+                let tube = v.rod.tube(60.0).unwrap();
+                let (contact, friction) = (v.rod.contact.unwrap(), v.rod.friction.unwrap());
+                let range = tube.friction_range / tube.contact_diameter;
+                (
+                    contact.stiffness,
+                    (1e6 * range).round() / 1e6,
+                    friction.ratio,
+                )
+            })
+            .collect();
+        // 2h over the contact diameter of a knot of ropelength 60 is 1.2
+        assert_eq!(
+            seen,
+            [
+                (5.0, 1.2, 0.1),
+                (100.0, 1.2, 0.1),
+                (20.0, 1.1, 0.1),
+                (20.0, 1.2, 0.1),
+                (20.0, 1.3, 0.1),
+                (20.0, 1.2, 0.0),
+                (20.0, 1.2, 1.0),
+                (5.0, 1.0, 0.1),
+                (100.0, 1.0, 0.1),
+            ]
+        );
+        let published = ElasticScene::published(Preset::Standard);
+        for scene in &study {
+            assert_eq!(scene.cuts, Cuts::Argmax);
+            assert_eq!(scene.twists, [0.0]);
+            let mut rod = scene.rod.clone();
+            (rod.contact, rod.friction) = (published.rod.contact, published.rod.friction);
+            assert_eq!(rod, published.rod);
+        }
+    }
+
+    #[test]
+    fn the_end_of_the_discharge_is_followed_at_five_twists_and_folders_differ() {
+        let last = of(Preset::Draft, Purpose::End);
+        assert_eq!(last.len(), 1);
+        assert_eq!(last[0].twists, [-2.0, -1.0, 0.0, 1.0, 2.0]);
+        assert_eq!(last[0].discharge.until_released, 0.99999);
+        let all = ElasticScene::published(Preset::Paper).variants();
+        let mut folders: Vec<_> = all.iter().map(|v| &v.scene.folder).collect();
+        folders.sort();
+        folders.dedup();
+        assert_eq!(folders.len(), all.len());
+        assert!(folders.iter().all(|f| f.as_str() != "elastic"));
+    }
+}

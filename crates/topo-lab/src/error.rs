@@ -1,0 +1,137 @@
+//! What can go wrong between a scene and its tables.
+
+use std::path::{Path, PathBuf};
+
+use thiserror::Error;
+
+/// A scene, a case or a table cannot be had as asked; the message says what, where, and what would be right.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum LabError {
+    /// A scene file cannot be read.
+    #[error("cannot read the scene {path}: {source}")]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// A scene is not valid TOML or has an unknown key or a value of the wrong type.
+    #[error("{path} is not a scene:\n{message}")]
+    Scene {
+        /// The file, or a name for a text.
+        path: PathBuf,
+        /// Line, key and what was expected.
+        message: String,
+    },
+    /// A value of a scene is out of range.
+    #[error("{}: {key} = {value} is not possible: {remedy}", place(.path, *.line))]
+    SceneValue {
+        /// The file.
+        path: PathBuf,
+        /// Line of the key, or of the table that it would stand in.
+        line: Option<usize>,
+        /// Key with its table.
+        key: String,
+        /// What was written.
+        value: String,
+        /// What would be right.
+        remedy: String,
+    },
+    /// The name of a scene's file names no folder for its results.
+    #[error("{}: {reason}: rename the file, its results go to a folder of its name", .path.display())]
+    SceneName {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        reason: String,
+    },
+    /// No measured setting grants what a scene asks for.
+    #[error("{wish} cannot be had: {reason}")]
+    Wish {
+        /// What was asked for.
+        wish: String,
+        /// What can be had.
+        reason: String,
+    },
+    /// The rod refuses its parameters.
+    #[error("{case}: {source}")]
+    Rod {
+        /// Which case, or the scene's file.
+        case: String,
+        /// Why.
+        source: topo_rod::RodError,
+    },
+    /// The nematic refuses its parameters.
+    #[error("{case}: {source}")]
+    Nematic {
+        /// Which case.
+        case: String,
+        /// Why.
+        source: topo_nematic::NematicError,
+    },
+    /// A knot is unknown, or its shape cannot be had.
+    #[error(transparent)]
+    Knot(#[from] topo_knots::KnotError),
+    /// A knot has no start shape.
+    #[error("{knot} has no tight shape: {reason}")]
+    Shape {
+        /// The knot.
+        knot: String,
+        /// Why.
+        reason: String,
+    },
+    /// A file cannot be written or read.
+    #[error(transparent)]
+    File(#[from] topo_core::FileError),
+    /// A table cannot be written or read, or a curve has no knot type.
+    #[error(transparent)]
+    Analysis(#[from] topo_analysis::AnalysisError),
+    /// The output folder cannot be used.
+    #[error(
+        "cannot write to the output folder {path}: {source}; choose another with --out or give permission"
+    )]
+    Output {
+        /// The folder.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// A folder holds the results of another scene.
+    #[error(
+        "{folder} holds the results of another scene: {why}; name another folder with --out, or delete this one"
+    )]
+    OtherScene {
+        /// The folder.
+        folder: PathBuf,
+        /// What differs.
+        why: String,
+    },
+    /// The threads cannot be started.
+    #[error("cannot start {jobs} jobs: {reason}")]
+    Jobs {
+        /// How many were asked for.
+        jobs: usize,
+        /// Why.
+        reason: String,
+    },
+}
+
+impl LabError {
+    /// Whether a case is refused for what it is, so that others can go on.
+    pub(crate) fn is_of_one_case(&self) -> bool {
+        match self {
+            Self::Rod { .. } | Self::Knot(_) | Self::Shape { .. } => true,
+            Self::Analysis(source) => matches!(source, topo_analysis::AnalysisError::Knot(_)),
+            Self::Nematic { source, .. } => !matches!(source, topo_nematic::NematicError::File(_)),
+            _ => false,
+        }
+    }
+}
+
+fn place(path: &Path, line: Option<usize>) -> String {
+    match line {
+        Some(line) => format!("{}, line {line}", path.display()),
+        None => path.display().to_string(),
+    }
+}

@@ -1,0 +1,55 @@
+//! Experiments: from a scene to its tables.
+//!
+//! Reading order: [`Scene`] (what a TOML file says): [`ElasticScene`] → [`run_sweep`] (its cases, in parallel, resumable) →
+//! [`topo_analysis::SweepRow`] (the table); and [`NematicScene`] → [`run_nematic_sweep`] → [`topo_analysis::NematicRow`]. Then what is
+//! made of many runs: [`tradeoff`] (what accuracy costs) and [`Wish`] (settings picked by it), [`stability`] (extremes), [`term_costs`].
+//!
+//! Elastic energies are in E_0 = E_b h² L and times in T_0 = 2 L η/(h E_b), with L the row's own length; nematic energies in
+//! L ξ_N and times in τ_N.
+
+mod cost;
+mod elastic;
+mod error;
+mod folder;
+mod knots;
+mod nematic;
+mod preset;
+mod progress;
+mod scene;
+mod stability;
+mod sweep;
+mod system;
+mod terms;
+mod tradeoff;
+mod warnings;
+mod wish;
+
+pub use cost::Estimate;
+pub use elastic::{
+    ACCURACY_CASES, AccuracyRow, Cuts, ElasticCase, ElasticReport, ElasticScene, NEAR_TIE, Names,
+    OwnKnots, Purpose, RESULTS_VERSION, ShapeFrame, Variant, discharge_frames, estimate_sweep,
+    measure_accuracy, perturbed, reference_scene, run_sweep,
+};
+pub use error::LabError;
+pub use folder::writable;
+pub use knots::{Shapes, knots_folder, tight_shapes, write_knots};
+pub use nematic::{
+    BucklingCase, BucklingRow, FieldSnapshot, NEMATIC_RESULTS_VERSION, NematicCase, NematicFrame,
+    NematicReport, NematicScene, buckling_cases, buckling_study, estimate_nematic_sweep,
+    nematic_frames, run_nematic_sweep,
+};
+pub use preset::Preset;
+pub use progress::{Event, Shard, SweepSettings, with_jobs};
+pub use scene::{Axis, AxisValue, Numbers, Scene};
+pub use stability::{StabilityRow, n_extremes, stability};
+pub use sweep::{FailedCase, SweepReport};
+pub use system::{Effort, System};
+pub use terms::{TermCost, term_costs};
+pub use tradeoff::{
+    CaseSet, PeakBytes, REFERENCE, Setting, TradeoffEvent, TradeoffRow, TradeoffRun, TradeoffWork,
+    compared, ladder, settings_of, tradeoff,
+};
+pub use wish::{
+    CheckRow, Cover, ErrorRow, Factor, Grant, Measured, Point, Record, Stamp, Wish,
+    check_estimates, errors_of_colloids, errors_of_rods, factor_of_estimates, points, table_hash,
+};

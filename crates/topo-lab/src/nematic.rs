@@ -1,0 +1,26 @@
+//! Nematic scenes: colloids, charged, switched and followed.
+
+mod by_wish;
+mod case;
+mod check;
+mod cost;
+mod field;
+mod file;
+mod frames;
+mod identity;
+mod keys;
+mod name;
+mod onset;
+mod run;
+mod scene;
+mod snapshot;
+mod sweep;
+
+pub use case::NematicCase;
+pub use field::FieldSnapshot;
+pub use frames::{NematicFrame, nematic_frames};
+pub use identity::RESULTS_VERSION as NEMATIC_RESULTS_VERSION;
+pub use onset::{BucklingCase, BucklingRow, buckling_cases, buckling_study};
+pub use scene::NematicScene;
+pub(crate) use scene::fit;
+pub use sweep::{NematicReport, estimate_nematic_sweep, run_nematic_sweep};

@@ -1,0 +1,415 @@
+//! One case: charge a colloid, switch its anchoring, follow the discharge, and write a folder.
+
+use serde_json::json;
+use topo_analysis::{
+    DischargeTimes, NEMATIC_SHARES, NematicRow, NematicSample, late_rate, write_table,
+};
+use topo_core::{FileError, StopReason, load_checkpoint, save_checkpoint, write_atomic_bytes};
+use topo_nematic::{
+    ChargeReport, ChargedNematic, Discharge, DischargeSettings, FinalSource, FlowCoupling,
+    MinimumState, NematicAccuracy, NematicBattery, NematicError, NematicState, Phase, Progress,
+    RunHooks, Threads,
+};
+
+use super::case::NematicCase;
+use super::field::{self, FieldSnapshot};
+use super::identity::{RESULTS_VERSION, fingerprint};
+use super::scene::NematicScene;
+use super::snapshot::{Kept, RING_ORDER, centre};
+use crate::LabError;
+use crate::folder::{Outcome, digests, forget_checkpoints, forget_file, make_folder};
+use crate::progress::Event;
+use crate::sweep::Place;
+use crate::warnings::push_warning;
+
+/// Schema of the checkpoint of snapshots.
+const KEPT: &str = "nematic-snapshots/4";
+
+/// How a case runs.
+pub(super) struct CaseRun<'a> {
+    pub scene: &'a NematicScene,
+    pub case: &'a NematicCase,
+    pub place: &'a Place<'a>,
+    pub threads: Threads,
+}
+
+impl CaseRun<'_> {
+    /// Runs the case and writes its folder; `None` when interrupted: then its checkpoint stays.
+    ///
+    /// A checkpoint that cannot be used is told and forgotten, and the case begins anew.
+    pub fn run(&self) -> Result<Option<Outcome<NematicRow>>, LabError> {
+        match self.attempt() {
+            Err(LabError::Nematic { source, .. }) if is_unusable_checkpoint(&source) => {
+                self.tell_damaged();
+                forget_checkpoints(self.place.folder, "")?;
+                self.attempt()
+            }
+            other => other,
+        }
+    }
+
+    fn tell_damaged(&self) {
+        (self.place.progress)(Event::Replaced {
+            names: &[self.place.name.to_owned()],
+            reason: "its checkpoint is damaged",
+        });
+    }
+
+    fn tell(&self, p: &Progress) {
+        (self.place.progress)(Event::Working {
+            name: self.place.name,
+            what: &told(p),
+        });
+    }
+
+    fn attempt(&self) -> Result<Option<Outcome<NematicRow>>, LabError> {
+        let Place {
+            folder,
+            settings: sweep,
+            ..
+        } = *self.place;
+        let interrupt = &sweep.interrupt;
+        let refuse = |source| LabError::Nematic {
+            case: self.place.name.to_owned(),
+            source,
+        };
+        make_folder(folder)?;
+        let accuracy = NematicAccuracy {
+            threads: self.threads,
+            ..self.scene.accuracy
+        };
+        let battery = NematicBattery::new(&self.case.nematic, &accuracy).map_err(refuse)?;
+        let mut tell = |p: &Progress| self.tell(p);
+        let mark = fingerprint(self.scene, self.case);
+        forget_checkpoints(folder, &mark)?;
+        let checkpoint = |phase: &str| folder.join(format!("{phase}-{mark}.checkpoint"));
+        let mut hooks = RunHooks::new(interrupt)
+            .with_progress(&mut tell)
+            .with_checkpoint(&checkpoint("charge"), sweep.checkpoint_seconds);
+        let charged = battery
+            .charge(&self.scene.charge, &mut hooks)
+            .map_err(refuse)?;
+        if interrupt.is_requested() {
+            return Ok(None);
+        }
+        let released = charged.switch(&self.scene.switch).map_err(refuse)?;
+        let end = released
+            .final_state(&mut RunHooks::new(interrupt).with_progress(&mut tell))
+            .map_err(refuse)?;
+        let settings = DischargeSettings {
+            flow: self.case.flow,
+            ..self.scene.discharge.clone()
+        };
+        // a run that keeps fields cannot go on from one that did not
+        let [snapshots, discharge] = if sweep.keep_fields {
+            ["snapshots-fields", "discharge-fields"]
+        } else {
+            ["snapshots", "discharge"]
+        };
+        let place = checkpoint(snapshots);
+        let there = place.exists();
+        let mut kept: Kept = load_checkpoint(&place, KEPT).unwrap_or_default();
+        if kept == Kept::default() {
+            if there {
+                self.tell_damaged();
+            }
+            // what was seen before cannot be seen again without going through the discharge again
+            forget_file(&checkpoint(discharge))?;
+            field::forget(folder)?;
+        }
+        if sweep.keep_fields {
+            let state = charged.state();
+            FieldSnapshot::of(None, state, None, centre(state)).write(folder, 0)?;
+        }
+        let mut failed: Option<LabError> = None;
+        let mut see =
+            |s: &topo_nematic::NematicSample, state: &NematicState, flow: Option<&FlowCoupling>| {
+                let share = released
+                    .stored(&end)
+                    .map_or(1.0, |stored| (s.energy.total() - end.energy) / stored);
+                if failed.is_none() && kept.see(s.time, share, state, flow) {
+                    let saved = self
+                        .keep_field(s.time, kept.n_kept, state, flow)
+                        .and_then(|()| Ok(save_checkpoint(&place, KEPT, &kept)?));
+                    failed = saved.err();
+                }
+            };
+        let mut hooks = RunHooks::new(interrupt)
+            .with_progress(&mut tell)
+            .with_samples(&mut see)
+            .with_checkpoint(&checkpoint(discharge), sweep.checkpoint_seconds);
+        let run = released.discharge(&settings, &mut hooks).map_err(refuse)?;
+        if let Some(error) = failed {
+            return Err(error);
+        }
+        if run.record.report.stop == StopReason::Interrupted {
+            return Ok(None);
+        }
+        let row = self.row(&battery, &charged, &run);
+        let outcome = Outcome {
+            failure: failure(&charged, &run),
+            rows: vec![row],
+        };
+        self.write(&charged, &run, &kept, &outcome)?;
+        forget_checkpoints(folder, "")?;
+        Ok(Some(outcome))
+    }
+
+    fn keep_field(
+        &self,
+        time: f64,
+        number: usize,
+        state: &NematicState,
+        flow: Option<&FlowCoupling>,
+    ) -> Result<(), LabError> {
+        let Place {
+            folder, settings, ..
+        } = *self.place;
+        if settings.keep_fields {
+            FieldSnapshot::of(Some(time), state, flow, centre(state)).write(folder, number)?;
+        }
+        Ok(())
+    }
+
+    fn row(
+        &self,
+        battery: &NematicBattery,
+        charged: &ChargedNematic,
+        run: &Discharge,
+    ) -> NematicRow {
+        let curve = &run.record.curve;
+        let names: Vec<&str> = curve.parts().iter().map(String::as_str).collect();
+        let f_charged = charged.energy().total();
+        let end = run.final_state.energy;
+        let times = |start: f64| {
+            let start = if run.stored.is_some() { start } else { end };
+            DischargeTimes::between(curve, &names, [start, end], &NEMATIC_SHARES)
+        };
+        let (after, whole) = (times(run.start), times(f_charged));
+        let at = |times: &DischargeTimes, k: usize| times.at(NEMATIC_SHARES[k]).map(|t| t.value);
+        let ring = charged.ring(RING_ORDER);
+        let (charge, discharge) = (charged.report(), &run.record.report);
+        let minimum = charge.minimum.as_ref();
+        let flow = discharge.flow.as_ref().map(|f| f.counters);
+        let mut row = NematicRow {
+            f_charged,
+            f_after_switch: run.start,
+            f_final: end,
+            order_parameter: charged.order().magnitude(),
+            lowest_eigenvalue: minimum.map(|m| m.lowest_eigenvalue),
+            state: minimum.map(|m| m.state),
+            ring_radius: ring.as_ref().map(|r| r.radius),
+            ring_mode: ring.as_ref().map(|r| r.mode() as u32),
+            ring_amplitude: ring.as_ref().map(|r| r.amplitude()),
+            t50: at(&after, 0),
+            t90: at(&after, 1),
+            t99: at(&after, 2),
+            t999: at(&after, 3),
+            t50_charged: at(&whole, 0),
+            t90_charged: at(&whole, 1),
+            t99_charged: at(&whole, 2),
+            t999_charged: at(&whole, 3),
+            late_rate: late_rate(curve, end),
+            steps: discharge.n_steps,
+            evaluations: charge.n_steps + discharge.counters.n_rate_evaluations,
+            stokes_updates: flow.map_or(0, |f| f.n_updates),
+            stokes_iterations: flow.map_or(0, |f| f.n_boundary_solves),
+            cpu_seconds: charge.cpu_seconds + discharge.cpu_seconds,
+            peak_bytes: charge.bytes.total().max(discharge.bytes.total()),
+            ..self.scene.blank_row(self.case)
+        };
+        for text in battery.warnings() {
+            push_warning(&mut row.warnings, text);
+        }
+        if !charge.is_converged() {
+            push_warning(
+                &mut row.warnings,
+                &format!(
+                    "charge not converged: {}, rms H {:.1e}",
+                    charge.stop, charge.rms_field
+                ),
+            );
+        }
+        if let Some(text) = stability_warning(charge) {
+            push_warning(&mut row.warnings, &text);
+        }
+        if !discharge.stop.is_success() {
+            push_warning(
+                &mut row.warnings,
+                &format!("discharge stopped: {}", discharge.stop),
+            );
+        }
+        for text in final_state_warnings(run) {
+            push_warning(&mut row.warnings, &text);
+        }
+        if discharge.stop == StopReason::ReachedTime {
+            push_warning(
+                &mut row.warnings,
+                "discharge not finished in the longest time followed",
+            );
+        }
+        if discharge.ledger_residual > 0.01 {
+            push_warning(
+                &mut row.warnings,
+                &format!(
+                    "energy account open by {:.1} %",
+                    100.0 * discharge.ledger_residual
+                ),
+            );
+        }
+        row
+    }
+
+    fn write(
+        &self,
+        charged: &ChargedNematic,
+        run: &Discharge,
+        kept: &Kept,
+        outcome: &Outcome<NematicRow>,
+    ) -> Result<(), LabError> {
+        let Place {
+            folder, settings, ..
+        } = *self.place;
+        let row = &outcome.rows[0];
+        let mut all = Kept::default();
+        all.keep(None, charged.state(), None);
+        all.lines.extend(kept.lines.iter().cloned());
+        all.slices.extend(kept.slices.iter().cloned());
+        all.ring.extend(kept.ring.iter().cloned());
+        write_table(&folder.join("lines.csv"), &all.lines)?;
+        write_table(&folder.join("ring.csv"), &all.ring)?;
+        write_table(&folder.join("slices.csv"), &all.slices)?;
+        let series: Vec<NematicSample> = run.record.samples.iter().map(sample).collect();
+        write_table(&folder.join("series.csv"), &series)?;
+        let mut json = json!({
+            "schema": "topo-nematic-case/1",
+            "fingerprint": fingerprint(self.scene, self.case),
+            "case": self.case,
+            "scene": self.scene,
+            "versions": { "topo": env!("CARGO_PKG_VERSION"), "results": RESULTS_VERSION },
+            "units": { "length": "xi_N", "time": "tau_N", "energy": "L xi_N" },
+            "charge": charged.report(),
+            "energy_charged": charged.energy(),
+            "order_charged": charged.order(),
+            "minimum": charged.report().minimum,
+            "ring_charged": charged.ring(RING_ORDER),
+            "energy_removed_by_switch": run.removed,
+            "energy_after_switch": run.start,
+            "final_state": run.final_state,
+            "discharge": run.record.report,
+            "ledger_residual": run.record.report.ledger_residual,
+            "rows": outcome.rows,
+            "failure": outcome.failure,
+            "files": digests(folder, &["lines.csv", "ring.csv", "slices.csv", "series.csv"]),
+            "warnings": row.warnings,
+            "timings": { "cpu_seconds": row.cpu_seconds },
+        });
+        if settings.keep_fields {
+            json["n_fields"] = (kept.n_kept + 1).into();
+        }
+        // written last: a folder with this file is complete
+        let mut text = serde_json::to_string_pretty(&json).unwrap_or_default();
+        text.push('\n');
+        Ok(write_atomic_bytes(
+            &folder.join("run.json"),
+            text.as_bytes(),
+        )?)
+    }
+}
+
+/// Why a run did not come to its end.
+fn failure(charged: &ChargedNematic, run: &Discharge) -> Option<String> {
+    let (charge, stop) = (charged.report(), &run.record.report.stop);
+    if !charge.is_converged() {
+        return Some(format!("charge not converged: {}", charge.stop));
+    }
+    (!stop.is_success()).then(|| format!("discharge stopped: {stop}"))
+}
+
+/// What is to be said of the state that released energy counts down to.
+fn final_state_warnings(run: &Discharge) -> Vec<String> {
+    let mut warnings = Vec::new();
+    let end = &run.final_state;
+    match run.stored {
+        None => warnings.push("nothing is stored: there are no discharge times".to_owned()),
+        Some(stored) if stored < 0.0 => warnings.push(format!(
+            "the final state lies {:.4} L xi_N above the present one: there are no discharge times",
+            -stored
+        )),
+        Some(stored) => {
+            let last = run.record.curve.len().checked_sub(1);
+            let left = last.map_or(0.0, |i| run.record.curve.stored_total(i) - end.energy);
+            if left < -BELOW * stored {
+                warnings.push(format!(
+                    "the discharge ended {:.4} L xi_N below the state that its times count down to: it relaxed to another",
+                    -left
+                ));
+            }
+        }
+    }
+    if end.source == FinalSource::Unconverged {
+        warnings.push("the final state did not converge: its energy is an upper bound".to_owned());
+    }
+    warnings
+}
+
+/// Share of the energy stored by which a discharge may end below its final state: beyond is not rounding.
+const BELOW: f64 = 1e-3;
+
+/// What the check of the charged state found that a reader of its row must know.
+fn stability_warning(charge: &ChargeReport) -> Option<String> {
+    match &charge.minimum {
+        Some(m) if m.state == MinimumState::Saddle => Some(format!(
+            "charged state is a saddle after {} kicks: lowest eigenvalue {:.1e}",
+            m.n_kicks, m.lowest_eigenvalue
+        )),
+        None if charge.is_converged() => {
+            Some("lowest mode of the charged state was not found".to_owned())
+        }
+        _ => None,
+    }
+}
+
+/// Whether what a checkpoint holds is the reason why a run was refused.
+fn is_unusable_checkpoint(error: &NematicError) -> bool {
+    matches!(
+        error,
+        NematicError::ForeignCheckpoint { .. }
+            | NematicError::File(
+                FileError::Truncated { .. }
+                    | FileError::NotACheckpoint { .. }
+                    | FileError::Version { .. }
+                    | FileError::Schema { .. }
+                    | FileError::Corrupt { .. }
+            )
+    )
+}
+
+fn sample(s: &topo_nematic::NematicSample) -> NematicSample {
+    NematicSample {
+        time: s.time,
+        energy: s.energy.total(),
+        dissipated_rotation: s.dissipated[0],
+        dissipated_flow: s.dissipated[1],
+        order_x: s.order.tilt[0],
+        order_y: s.order.tilt[1],
+        tilt: s.order.director_magnitude(),
+        ring_radius: s.ring.as_ref().map(|r| r.radius),
+        max_speed: s.max_speed,
+        power: None,
+        flow_correlation: s.flow_correlation,
+    }
+}
+
+/// One line of progress.
+fn told(p: &Progress) -> String {
+    let energy = p.energy.map_or(String::new(), |f| format!(", F {f:.4e}"));
+    match p.phase {
+        Phase::Charge => format!(
+            "charging: step {}, rms H {:.1e}{energy}",
+            p.step, p.rms_field
+        ),
+        Phase::FinalState => format!("final state: step {}, rms H {:.1e}", p.step, p.rms_field),
+        Phase::Discharge => format!("discharging: step {}, t {:.3e}{energy}", p.step, p.time),
+    }
+}

@@ -1,0 +1,42 @@
+//! Scene files: what is the same for both batteries.
+
+mod axis;
+mod beside;
+mod document;
+mod either;
+mod folder;
+mod numbers;
+
+pub(crate) use axis::{Access, SweptKey, axes, check_count, product, put_axes, remove};
+pub use axis::{Axis, AxisValue};
+pub(crate) use beside::BesideQ;
+pub(crate) use document::{Document, read_text};
+pub use either::Scene;
+pub(crate) use folder::folder_of;
+pub use numbers::Numbers;
+pub(crate) use numbers::{numbers, repeated, repeated_number};
+
+/// The dotted keys of all numbers and lists of numbers in a file.
+#[cfg(test)]
+pub(crate) fn numbers_written(file: &toml::Table) -> Vec<String> {
+    fn is_numeric(value: &toml::Value) -> bool {
+        match value {
+            toml::Value::Integer(_) | toml::Value::Float(_) => true,
+            toml::Value::Array(list) => list.iter().any(is_numeric),
+            toml::Value::Table(table) => table.values().any(is_numeric),
+            _ => false,
+        }
+    }
+    let mut keys = Vec::new();
+    for (name, value) in file {
+        match value {
+            toml::Value::Table(table) => {
+                let inner = numbers_written(table);
+                keys.extend(inner.iter().map(|key| format!("{name}.{key}")));
+            }
+            value if is_numeric(value) => keys.push(name.clone()),
+            _ => {}
+        }
+    }
+    keys
+}

@@ -1,0 +1,256 @@
+//! Extremes of the rod.
+
+use nalgebra::Vector3;
+use topo_core::{Interrupt, Polyline};
+use topo_rod::{
+    Accuracy, ChargeSettings, ContactParameters, CutSite, DischargeSettings, FrictionParameters,
+    Guards, RodBattery, RodParameters,
+};
+
+use super::cell::{Cell, Verdict};
+use super::watch::violations;
+use crate::system::Effort;
+
+/// Drift of the linking number of a closed rod, in turns, that counts as a crossing.
+const CROSSING: f64 = 1e-8;
+
+/// Most trial steps of a phase in a draft.
+const DRAFT_STEPS: u64 = 10_000;
+/// Edges above which a draft follows charge and discharge for a short while only, in T_0.
+const LARGE: usize = 200;
+const LARGE_DURATION: f64 = 0.02;
+
+/// Energy that is rounding, in E_0.
+const NOTHING: f64 = 1e-9;
+
+/// One run.
+#[derive(Debug, Clone, Copy)]
+struct Case {
+    is_eight: bool,
+    twist: f64,
+    gamma: f64,
+    slenderness: f64,
+    n_edges: usize,
+    friction: f64,
+    contact: f64,
+    tolerance: f64,
+}
+
+const MIDDLE: Case = Case {
+    is_eight: false,
+    twist: 1.0,
+    gamma: 5.0,
+    slenderness: 50.0,
+    n_edges: 100,
+    friction: 0.1,
+    contact: 20.0,
+    tolerance: 2e-3,
+};
+
+impl Case {
+    /// Whether it lies where every run must converge.
+    fn is_inner(&self) -> bool {
+        self.twist.abs() <= 4.0
+            && (1.0..=1e3).contains(&self.gamma)
+            && (50..=1600).contains(&self.n_edges)
+            && self.slenderness == MIDDLE.slenderness
+            && self.friction <= 10.0
+            && (5.0..=500.0).contains(&self.contact)
+            && (1e-4..=1e-2).contains(&self.tolerance)
+    }
+
+    fn run(&self, effort: Effort, interrupt: &Interrupt) -> Verdict {
+        let parameters = RodParameters {
+            slenderness: self.slenderness,
+            n_edges: self.n_edges,
+            stretch_ratio: self.gamma,
+            twist: Some(self.twist),
+            contact: Some(ContactParameters {
+                stiffness: self.contact,
+            }),
+            friction: (self.friction > 0.0).then(|| FrictionParameters {
+                ratio: self.friction,
+                ..Default::default()
+            }),
+            ..Default::default()
+        };
+        let mut accuracy = Accuracy {
+            tolerance: self.tolerance,
+            ..Default::default()
+        };
+        let mut charge = ChargeSettings::default();
+        let mut discharge = DischargeSettings::default();
+        if effort == Effort::Draft {
+            accuracy.max_steps = DRAFT_STEPS;
+            discharge.until_released = 0.99;
+            if self.n_edges > LARGE {
+                (charge.duration, discharge.longest) = (LARGE_DURATION, LARGE_DURATION);
+            }
+        }
+        let curve = if self.is_eight {
+            figure_eight()
+        } else {
+            trefoil()
+        };
+        let run = || {
+            let battery = RodBattery::new(&parameters, &accuracy, Guards::default(), &curve)?;
+            let charged = battery.charge(&charge, interrupt)?;
+            let record = charged.record();
+            let mut found = violations(&record.curve, NOTHING);
+            found += u32::from(record.report.link_drift.is_some_and(|d| d > CROSSING));
+            if !record.report.stop.is_success() {
+                return Ok(Verdict::stopped(
+                    format!("charge: {}", record.report.stop),
+                    found,
+                ));
+            }
+            let run = charged
+                .cut(CutSite::MaximumEnergyDensity)?
+                .discharge(&discharge, interrupt)?;
+            found += violations(&run.record.curve, NOTHING);
+            let stop = &run.record.report.stop;
+            Ok(if stop.is_success() {
+                Verdict::converged(found)
+            } else {
+                Verdict::stopped(format!("discharge: {stop}"), found)
+            })
+        };
+        run().unwrap_or_else(|refused: topo_rod::RodError| {
+            Verdict::stopped(format!("refused: {refused}"), 0)
+        })
+    }
+}
+
+/// All runs.
+pub(super) fn cells(effort: Effort) -> Vec<Cell> {
+    let mut cells = Vec::new();
+    let mut map = |axes: [&'static str; 2], xs: &[f64], ys: &[f64], set: fn(f64, f64) -> Case| {
+        for &y in ys {
+            for &x in xs {
+                let case = set(x, y);
+                cells.push(Cell {
+                    axes,
+                    at: [x.to_string(), y.to_string()],
+                    is_inner: case.is_inner(),
+                    run: Box::new(move |interrupt| case.run(effort, interrupt)),
+                });
+            }
+        }
+    };
+    let twists = [-20.0, -10.0, -4.0, -2.0, 0.0, 2.0, 4.0, 10.0, 20.0];
+    let gammas = [0.1, 1.0, 10.0, 100.0, 1e3, 1e4];
+    map(["twist", "gamma"], &twists, &gammas, |x, y| Case {
+        twist: x,
+        gamma: y,
+        ..MIDDLE
+    });
+    map(
+        ["twist of a figure-eight knot", "gamma"],
+        &twists,
+        &gammas,
+        |x, y| Case {
+            is_eight: true,
+            twist: x,
+            gamma: y,
+            ..MIDDLE
+        },
+    );
+    let edges = [16.0, 50.0, 100.0, 200.0, 400.0, 800.0, 1600.0, 4000.0];
+    map(
+        ["edges", "twist"],
+        &edges,
+        &[-4.0, -1.0, 0.0, 1.0, 4.0],
+        |x, y| Case {
+            n_edges: x as usize,
+            twist: y,
+            ..MIDDLE
+        },
+    );
+    map(
+        ["slenderness", "friction"],
+        &[10.0, 20.0, 33.0, 50.0, 100.0, 300.0, 1000.0],
+        &[0.0, 0.1, 1.0, 10.0, 100.0],
+        |x, y| Case {
+            slenderness: x,
+            friction: y,
+            ..MIDDLE
+        },
+    );
+    let stiffnesses = [1.0, 5.0, 20.0, 100.0, 1e3, 1e4];
+    map(
+        ["contact stiffness", "tolerance"],
+        &stiffnesses,
+        &[1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7],
+        |x, y| Case {
+            contact: x,
+            tolerance: y,
+            ..MIDDLE
+        },
+    );
+    map(
+        ["friction", "twist"],
+        &[0.0, 0.1, 1.0, 10.0, 100.0],
+        &[-20.0, -4.0, -1.0, 0.0, 1.0, 4.0, 20.0],
+        |x, y| Case {
+            friction: x,
+            twist: y,
+            ..MIDDLE
+        },
+    );
+    map(
+        ["contact stiffness", "gamma"],
+        &stiffnesses,
+        &gammas,
+        |x, y| Case {
+            contact: x,
+            gamma: y,
+            ..MIDDLE
+        },
+    );
+    map(
+        ["edges", "gamma"],
+        &[16.0, 50.0, 100.0, 400.0],
+        &gammas,
+        |x, y| Case {
+            n_edges: x as usize,
+            gamma: y,
+            twist: 4.0,
+            ..MIDDLE
+        },
+    );
+    cells
+}
+
+/// A curve over one turn of its parameter.
+fn closed(point: impl Fn(f64) -> [f64; 3]) -> Polyline {
+    let n = 400;
+    let at = |k: usize| Vector3::from(point(std::f64::consts::TAU * k as f64 / n as f64));
+    // A smooth curve without double points is a polygon that can be had.
+    Polyline::new((0..n).map(at).collect(), true).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// A trefoil, not tight.
+pub(crate) fn trefoil() -> Polyline {
+    closed(trefoil_at)
+}
+
+/// A right-handed trefoil over one turn of its parameter.
+pub(super) fn trefoil_at(u: f64) -> [f64; 3] {
+    let r = 2.0 + (3.0 * u).cos();
+    [
+        r * (2.0 * u).cos(),
+        r * (2.0 * u).sin(),
+        -1.2 * (3.0 * u).sin(),
+    ]
+}
+
+fn figure_eight() -> Polyline {
+    closed(|u| {
+        let r = 2.0 + (2.0 * u).cos();
+        [
+            r * (3.0 * u).cos(),
+            r * (3.0 * u).sin(),
+            1.2 * (4.0 * u).sin(),
+        ]
+    })
+}

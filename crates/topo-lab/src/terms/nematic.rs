@@ -1,0 +1,121 @@
+//! Terms of a colloid: flow, second elastic constant, external field, second precision.
+
+use topo_core::{CpuClock, Interrupt};
+use topo_nematic::{
+    ChargeSettings, DischargeSettings, ExternalField, FlowParameters, Material, NematicAccuracy,
+    NematicBattery, NematicParameters, PhaseReport, Precision, RunHooks, SurfacePattern,
+    SwitchSettings,
+};
+
+use super::term::{Taken, Term};
+use crate::{Effort, LabError};
+
+/// A colloid with all that can be left out.
+#[derive(Debug, Clone)]
+struct Colloid {
+    parameters: NematicParameters,
+    accuracy: NematicAccuracy,
+    discharge: DischargeSettings,
+}
+
+pub(super) fn terms(effort: Effort) -> Vec<Term> {
+    let radius = if effort == Effort::Draft { 7.5 } else { 15.0 };
+    let plain = Colloid {
+        parameters: NematicParameters {
+            radius,
+            spacing: 1.5,
+            pattern: SurfacePattern::Charge(3),
+            ..NematicParameters::default()
+        },
+        accuracy: NematicAccuracy::default(),
+        discharge: DischargeSettings {
+            until_released: 0.99,
+            ..DischargeSettings::default()
+        },
+    };
+    let shape = format!("R = {radius}, h = 1.5, q = 3");
+    let mut terms = Vec::new();
+    let mut add = |name: &'static str,
+                   value: &str,
+                   change: fn(&mut Colloid),
+                   own: fn(&PhaseReport) -> (u64, u64)| {
+        let mut with = plain.clone();
+        change(&mut with);
+        let scenes = [plain.clone(), with];
+        terms.push(Term {
+            system: "nematic",
+            name,
+            quantity: format!("{value}; {shape}"),
+            run: Box::new(move |with, interrupt| run(&scenes[usize::from(with)], own, interrupt)),
+        });
+    };
+    add(
+        "flow",
+        "every step",
+        |c| c.discharge.flow = Some(FlowParameters::default()),
+        |r| (r.bytes.flow, r.flow.map_or(0, |f| f.counters.n_updates)),
+    );
+    add(
+        "second elastic constant",
+        "L_2 = 0.3 L",
+        |c| {
+            c.parameters.material = Material {
+                second_elastic_constant: Some(0.3),
+                ..c.parameters.material
+            };
+        },
+        |r| (r.bytes.second, r.n_second_passes),
+    );
+    add(
+        "external field",
+        "chi_a E² = 0.01 along z",
+        |c| {
+            c.parameters.field = Some(ExternalField {
+                vector: [0.0, 0.0, 0.1],
+                anisotropy: 1.0,
+            });
+        },
+        // The field is five numbers of the kernel, and no pass of its own.
+        |_| (0, 0),
+    );
+    add(
+        "second precision",
+        "discharged in f32 instead of f64",
+        |c| c.accuracy.precision = Precision::Single,
+        |_| (0, 0),
+    );
+    terms
+}
+
+/// Charges, switches and discharges a colloid.
+fn run(
+    colloid: &Colloid,
+    own: fn(&PhaseReport) -> (u64, u64),
+    interrupt: &Interrupt,
+) -> Result<Taken, LabError> {
+    let run = || {
+        let battery = NematicBattery::new(&colloid.parameters, &colloid.accuracy)?;
+        let charge = ChargeSettings {
+            tolerance: 1e-6,
+            order_tolerance: 1e-4,
+            ..ChargeSettings::default()
+        };
+        let clock = CpuClock::start();
+        let charged = battery.charge(&charge, &mut RunHooks::new(interrupt))?;
+        let released = charged.switch(&SwitchSettings::default())?;
+        let run = released.discharge(&colloid.discharge, &mut RunHooks::new(interrupt))?;
+        let report = run.record.report;
+        let (term_bytes, term_calls) = own(&report);
+        Ok(Taken {
+            cpu_seconds: clock.seconds(),
+            calls: charged.report().n_steps + report.counters.n_rate_evaluations,
+            peak_bytes: report.bytes.total(),
+            term_bytes,
+            term_calls,
+        })
+    };
+    run().map_err(|source| LabError::Nematic {
+        case: "cost of a term".to_owned(),
+        source,
+    })
+}

@@ -1,0 +1,121 @@
+//! Settings of the knot generator: vertices a unit of length, length of the search, method.
+
+use topo_core::CpuClock;
+use topo_knots::{KnotTable, TightenSettings, second_opinion, tighten_entry};
+
+use super::trial::{Outcome, REFERENCE, Trial};
+use crate::LabError;
+use crate::system::Effort;
+
+const QUANTITY: &str = "ropelength";
+
+/// Vertices a unit at which the second method is tried.
+const SECOND: [f64; 2] = [2.0, 4.0];
+
+/// All runs: the reference is the published ropelength, which costs nothing here.
+pub(super) fn trials(effort: Effort) -> Result<Vec<Trial>, LabError> {
+    let table = KnotTable::builtin();
+    let names: Vec<String> = match effort {
+        Effort::Draft => ["3_1", "4_1", "5_2", "6_2", "7_4", "7_7"]
+            .map(String::from)
+            .to_vec(),
+        Effort::Standard => table.primes_up_to(7).map(|k| k.name.clone()).collect(),
+    };
+    let levels: &[f64] = match effort {
+        Effort::Draft => &[2.0, 4.0, 8.0],
+        Effort::Standard => &[2.0, 4.0, 8.0, 16.0],
+    };
+    let mut trials = Vec::new();
+    for name in names {
+        let entry = table.get(&name)?.into_owned();
+        let published = entry.length_over_radius;
+        trials.push(Trial {
+            case: name.clone(),
+            setting: REFERENCE,
+            value: "published".to_owned(),
+            run: Box::new(move |_, _| {
+                Ok(Some(Outcome {
+                    quantities: vec![(QUANTITY, published)],
+                    cpu_seconds: 0.0,
+                    peak_bytes: 0,
+                }))
+            }),
+        });
+        let mut tighten = |setting, value: String, settings: TightenSettings| {
+            let entry = entry.clone();
+            trials.push(Trial {
+                case: name.clone(),
+                setting,
+                value,
+                run: Box::new(move |meter, interrupt| {
+                    let (found, cpu_seconds, peak_bytes) =
+                        meter.measure(|| tighten_entry(&entry, &settings));
+                    let found = found.and_then(Result::ok).map(|t| t.length_over_radius);
+                    Ok((!interrupt.is_requested()).then_some(Outcome {
+                        quantities: vec![(QUANTITY, found)],
+                        cpu_seconds,
+                        peak_bytes,
+                    }))
+                }),
+            });
+        };
+        for &per_unit in levels {
+            tighten("vertices", format!("{per_unit} a unit"), at(per_unit));
+        }
+        for (value, change) in [
+            (
+                "no kicks",
+                TightenSettings {
+                    n_kicks: 0,
+                    n_kicks_a_start: 0,
+                    n_variants: 0,
+                    ..at(4.0)
+                },
+            ),
+            (
+                "three times the kicks",
+                TightenSettings {
+                    n_kicks: 12,
+                    n_variants: 3,
+                    ..at(4.0)
+                },
+            ),
+        ] {
+            tighten("search", format!("{value}, 4 a unit"), change);
+        }
+        for per_unit in SECOND {
+            let entry = entry.clone();
+            trials.push(Trial {
+                case: name.clone(),
+                setting: "method",
+                value: format!("augmented Lagrangian, {per_unit} a unit"),
+                run: Box::new(move |meter, interrupt| {
+                    let start = tighten_entry(&entry, &at(per_unit));
+                    let clock = CpuClock::start();
+                    let (found, _, peak_bytes) =
+                        meter.measure(|| start.ok().and_then(|s| second_opinion(&s).ok()));
+                    let found = found.flatten().map(|s| s.length_over_radius);
+                    Ok((!interrupt.is_requested()).then_some(Outcome {
+                        quantities: vec![(QUANTITY, found)],
+                        cpu_seconds: clock.seconds(),
+                        peak_bytes,
+                    }))
+                }),
+            });
+        }
+    }
+    Ok(trials)
+}
+
+fn at(per_unit: f64) -> TightenSettings {
+    TightenSettings {
+        per_unit,
+        ..if per_unit > 8.0 {
+            TightenSettings::fine()
+        } else if per_unit > 4.0 {
+            TightenSettings::standard()
+        } else {
+            TightenSettings::draft()
+        }
+    }
+}

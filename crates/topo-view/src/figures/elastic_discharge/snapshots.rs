@@ -1,0 +1,250 @@
+//! Panel (a): the fastest and the slowest discharge at zero twist, as tubes.
+
+use super::super::figure::Context;
+use super::super::series::{bounds, root_ticks};
+use crate::data::{self, Case, Snapshot, Sweep};
+use crate::error::ViewError;
+use crate::plot::canvas::Canvas;
+use crate::plot::color::{QUIET, Scale};
+use crate::plot::style::Style;
+use crate::plot::tube::Tube;
+use crate::plot::{camera, text};
+use nalgebra::Vector3;
+use std::path::Path;
+
+/// Snapshots, each with its points turned to the reader.
+type Strip = Vec<(Snapshot, Vec<Vector3<f64>>)>;
+
+/// Snapshots shown of a discharge.
+const SHOWN: usize = 6;
+
+/// Draws the panel into a box and says which states it shows.
+pub fn draw(
+    context: &Context,
+    sweep: &Sweep,
+    canvas: &mut Canvas,
+    at: [f64; 2],
+    size: [f64; 2],
+) -> Result<String, ViewError> {
+    let zero = sweep
+        .twists()
+        .into_iter()
+        .min_by(|a, b| a.abs().total_cmp(&b.abs()))
+        .unwrap_or(0.0);
+    let mut cases: Vec<(&Case, f64)> = sweep
+        .knots()
+        .iter()
+        .filter_map(|k| sweep.at(k, zero))
+        .filter_map(|c| Some((c, c.first().t99?)))
+        .collect();
+    cases.sort_by(|a, b| a.1.total_cmp(&b.1));
+    let rows = match (cases.first(), cases.last()) {
+        (Some(fast), Some(slow)) if cases.len() > 1 => vec![("fast", *fast), ("slow", *slow)],
+        (Some(only), _) => vec![("", *only)],
+        _ => return Ok(String::new()),
+    };
+    let mut strips = Vec::new();
+    for (_, (case, _)) in &rows {
+        strips.push(strip(context.results, case)?);
+    }
+    let all = strips
+        .iter()
+        .flatten()
+        .flat_map(|s| s.0.curve.density.iter().copied());
+    // The ends of the scale leave out the hottest spots of the tight bends.
+    let mut sorted: Vec<f64> = all.collect();
+    sorted.sort_by(f64::total_cmp);
+    let high = sorted
+        .get((0.985 * sorted.len() as f64) as usize)
+        .copied()
+        .unwrap_or(1.0);
+    let scale = Scale::viridis_root(high.max(1e-12));
+
+    let (bar, label, gap) = (56.0, 44.0, 7.0);
+    let room = size[0] - bar - label - gap * SHOWN as f64;
+    let height = size[1] / rows.len() as f64;
+    let widths = strips
+        .iter()
+        .map(|s| s.iter().map(|(_, v)| span(v)[0]).sum::<f64>());
+    let unit = widths.map(|w| room / w).fold(8.0, f64::min);
+    let tallest = bounds(strips.iter().flatten().map(|(_, v)| span(v)[1])).1;
+    let unit = unit.min((height - 20.0) / tallest);
+    for (k, ((name, (case, _)), shots)) in rows.iter().zip(&strips).enumerate() {
+        let top = at[1] + height * k as f64;
+        let middle = top + (height - 18.0) / 2.0;
+        let knot = text::knot_name(&case.first().knot);
+        canvas.text(
+            at[0] + 14.0,
+            middle,
+            &knot,
+            Style::default().bold().size(13.0),
+        );
+        canvas.text(
+            at[0] + 14.0,
+            middle + 13.0,
+            name,
+            Style::default().size(9.5).color(QUIET),
+        );
+        let used: f64 = shots.iter().map(|(_, v)| span(v)[0] * unit).sum();
+        let free = (size[0] - bar - label - used) / shots.len().max(1) as f64;
+        let mut x = at[0] + label + free / 2.0;
+        for (shot, view) in shots {
+            let [w, h] = span(view);
+            let [x0, y0, x1, y1] = camera::extent(view);
+            let tube =
+                Tube::new(view, &shot.curve.density, false, 1.0, &scale).ok_or_else(|| {
+                    ViewError::Drawing {
+                        reason: format!("snapshot at {} is no curve", shot.time),
+                    }
+                })?;
+            let side = [w * unit, h * unit];
+            canvas.tube(
+                [x, middle - side[1] / 2.0],
+                side,
+                [(x0 + x1) / 2.0, (y0 + y1) / 2.0],
+                unit,
+                &tube,
+            )?;
+            let time = told(shot.time);
+            canvas.text(
+                x + side[0] / 2.0,
+                top + height - 8.0,
+                &time,
+                Style::default().middle().size(9.0),
+            );
+            x += side[0] + free;
+        }
+    }
+    let bar_at = [at[0] + size[0] - 42.0, at[1] + 24.0];
+    let bar_size = [9.0, size[1] - 58.0];
+    canvas.color_bar(
+        bar_at,
+        bar_size,
+        &scale,
+        &root_ticks(high),
+        "Energy density *w* / *E*_{b}*h*^{2}",
+    );
+    let said: Vec<String> = rows
+        .iter()
+        .map(|(name, (case, t))| {
+            format!(
+                "{} ({name}) t99 = {} T₀",
+                text::knot_name(&case.first().knot),
+                text::number(*t, 2)
+            )
+        })
+        .collect();
+    Ok(format!("Snapshots at zero twist: {}.", said.join(", ")))
+}
+
+/// A time in T0 with as many decimals as it needs.
+fn told(time: f64) -> String {
+    if time == 0.0 {
+        return "*t* = 0".to_owned();
+    }
+    let places = if time < 0.1 {
+        3
+    } else {
+        usize::from(time < 10.0) + 1
+    };
+    format!("{} *T*_{{0}}", text::number(time, places))
+}
+
+/// The snapshots whose energies are spread most evenly from the first to the last 6 %.
+fn spread(shots: Vec<Snapshot>, energies: &[(f64, f64)]) -> Vec<Snapshot> {
+    if shots.len() <= SHOWN || energies.is_empty() {
+        return shots;
+    }
+    let start = energies[0].1.max(f64::MIN_POSITIVE);
+    let left = |time: f64| {
+        let gap = |m: &&(f64, f64)| (m.0 - time).abs();
+        let near = energies.iter().min_by(|a, b| gap(a).total_cmp(&gap(b)));
+        near.map_or(0.0, |m| m.1 / start)
+    };
+    let lefts: Vec<f64> = shots.iter().map(|s| left(s.time)).collect();
+    let mut kept: Vec<usize> = Vec::new();
+    for k in 0..SHOWN {
+        let aim = 1.0 - 0.94 * k as f64 / (SHOWN - 1) as f64;
+        let free = (0..shots.len()).filter(|i| !kept.contains(i));
+        kept.extend(
+            free.min_by(|&a, &b| (lefts[a] - aim).abs().total_cmp(&(lefts[b] - aim).abs())),
+        );
+    }
+    let mut i = 0;
+    let mut shots = shots;
+    shots.retain(|_| {
+        i += 1;
+        kept.contains(&(i - 1))
+    });
+    shots
+}
+
+fn span(view: &[Vector3<f64>]) -> [f64; 2] {
+    let [x0, y0, x1, y1] = camera::extent(view);
+    [x1 - x0 + 2.4, y1 - y0 + 2.4]
+}
+
+/// Snapshots of the first cut, spread evenly over those stored, each turned like the last.
+fn strip(results: &Path, case: &Case) -> Result<Strip, ViewError> {
+    let path = results
+        .join("elastic")
+        .join(case.folder())
+        .join("snapshots.csv");
+    let cut = case.first().cut;
+    let mut shots = data::snapshots(&path)?;
+    shots.retain(|s| (s.cut - cut).abs() < 1e-9);
+    let energies = data::series(&path.with_file_name("series.csv"))?;
+    let energies: Vec<(f64, f64)> = energies
+        .iter()
+        .filter(|m| (m.cut - cut).abs() < 1e-9)
+        .map(|m| (m.time, m.energy))
+        .collect();
+    let shots = spread(shots, &energies);
+    // Turned backwards from the straight end, which lies along x, to the knot.
+    let mut strip = Strip::new();
+    for shot in shots.into_iter().rev() {
+        let points = &shot.curve.points;
+        let like = strip.last().and_then(|(_, v)| camera::aligned(points, v));
+        let view = camera::view(points, &like.unwrap_or_else(|| camera::flattest(points)));
+        strip.push((shot, view));
+    }
+    strip.reverse();
+    Ok(strip)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::Curve;
+
+    #[test]
+    fn snapshots_are_spread_in_energy() {
+        let shots: Vec<Snapshot> = (0..40)
+            .map(|k| Snapshot {
+                cut: 0.0,
+                time: f64::from(k),
+                curve: Curve::default(),
+            })
+            .collect();
+        // Nothing happens until 20, and nothing after 30.
+        let energies: Vec<(f64, f64)> = (0..40)
+            .map(|k| {
+                (
+                    f64::from(k),
+                    1.0 - (f64::from(k) - 20.0).clamp(0.0, 10.0) / 10.0,
+                )
+            })
+            .collect();
+        let times: Vec<f64> = spread(shots, &energies).iter().map(|s| s.time).collect();
+        assert_eq!(times.len(), SHOWN);
+        assert!(times.windows(2).all(|w| w[0] < w[1]));
+        assert!(times[1] > 20.0 && times[4] < 30.0, "{times:?}");
+    }
+
+    #[test]
+    fn times_are_told_briefly() {
+        assert_eq!(told(0.0), "*t* = 0");
+        assert_eq!(told(0.0123), "0.012 *T*_{0}");
+        assert_eq!(told(20.55), "20.6 *T*_{0}");
+    }
+}

@@ -1,0 +1,129 @@
+//! A slice as a picture: vorticity, director, flow arrows and the particle.
+
+use crate::data::{DefectLine, Slice};
+use crate::error::ViewError;
+use crate::plot::canvas::Canvas;
+use crate::plot::color::{INK, Scale};
+use crate::plot::render;
+use resvg::tiny_skia::{Pixmap, PremultipliedColorU8};
+use topo_analysis::SlicePoint;
+
+/// What a slice is drawn with.
+pub struct Look<'a> {
+    /// Colours of the vorticity.
+    pub vorticity: &'a Scale,
+    /// Speed whose arrow is as long as the distance of two arrows.
+    pub speed: f64,
+    /// Radius of the particle.
+    pub radius: f64,
+    /// Units of the canvas per unit of length.
+    pub unit: f64,
+    /// Centre on the canvas.
+    pub center: [f64; 2],
+}
+
+/// Draws the slice with the places where defect lines pass it.
+pub fn draw(
+    canvas: &mut Canvas,
+    slice: &Slice,
+    lines: &[&DefectLine],
+    look: &Look<'_>,
+) -> Result<(), ViewError> {
+    let [half_x, half_z] = slice.half_size();
+    let (unit, [cx, cy]) = (look.unit, look.center);
+    let corner = [cx - half_x * unit, cy - half_z * unit];
+    let size = [2.0 * half_x * unit, 2.0 * half_z * unit];
+    canvas.image(corner, size, &heat(slice, look.vorticity)?);
+    let pitch = slice.pitch();
+    let stride = ((2.0 * half_x / pitch / 16.0).round().max(1.0)) as i64;
+    let apart = stride as f64 * pitch * unit;
+    let outside = |p: &&SlicePoint| p.x.hypot(p.z) > look.radius + 0.5 * pitch;
+    let place = |p: &SlicePoint| [cx + p.x * unit, cy - p.z * unit];
+    // a rod at the plates would stick out of the picture
+    let inside = |p: &&SlicePoint| p.z.abs() + 0.36 * apart / unit * p.nz.abs() < half_z;
+    for p in slice.thinned(stride).filter(outside).filter(inside) {
+        let (at, d) = (place(p), [0.36 * apart * p.nx, -0.36 * apart * p.nz]);
+        let (from, to) = ([at[0] - d[0], at[1] - d[1]], [at[0] + d[0], at[1] + d[1]]);
+        canvas.line(from, to, "#5d9a4e", 0.9);
+    }
+    for p in slice.shifted(stride, stride / 2).filter(outside) {
+        if let (Some(ux), Some(uz)) = (p.ux, p.uz) {
+            arrow(canvas, place(p), [ux, -uz].map(|u| u / look.speed * apart));
+        }
+    }
+    canvas.raw(&format!(
+        r##"<circle cx="{cx:.2}" cy="{cy:.2}" r="{:.2}" fill="#d9dde2" stroke="{INK}" stroke-width="0.8"/>"##,
+        look.radius * unit
+    ));
+    for line in lines {
+        crossings(canvas, line, look);
+    }
+    canvas.raw(&format!(
+        r##"<rect x="{:.2}" y="{:.2}" width="{:.2}" height="{:.2}" fill="none" stroke="{INK}" stroke-width="0.8"/>"##,
+        corner[0], corner[1], size[0], size[1]
+    ));
+    Ok(())
+}
+
+/// Red dots where a line passes the plane y = 0.
+fn crossings(canvas: &mut Canvas, line: &DefectLine, look: &Look<'_>) {
+    let n = line.points.len();
+    for i in 0..if line.closed { n } else { n.saturating_sub(1) } {
+        let (a, b) = (line.points[i], line.points[(i + 1) % n]);
+        if (a.y < 0.0) != (b.y < 0.0) {
+            let p = a + (b - a) * (a.y / (a.y - b.y));
+            canvas.raw(&format!(
+                r##"<circle cx="{:.2}" cy="{:.2}" r="2.6" fill="#d62728" stroke="#fff" stroke-width="0.7"/>"##,
+                look.center[0] + p.x * look.unit,
+                look.center[1] - p.z * look.unit
+            ));
+        }
+    }
+}
+
+fn arrow(canvas: &mut Canvas, at: [f64; 2], d: [f64; 2]) {
+    let length = d[0].hypot(d[1]);
+    if length < 1.5 {
+        return;
+    }
+    let (from, to) = (
+        [at[0] - 0.5 * d[0], at[1] - 0.5 * d[1]],
+        [at[0] + 0.5 * d[0], at[1] + 0.5 * d[1]],
+    );
+    canvas.line(from, to, INK, 0.8);
+    let head = (0.45 * length).min(3.6);
+    let e = [d[0] / length * head, d[1] / length * head];
+    let points = format!(
+        "{:.2},{:.2} {:.2},{:.2} {:.2},{:.2}",
+        to[0] + 0.3 * e[0],
+        to[1] + 0.3 * e[1],
+        to[0] - e[0] - 0.45 * e[1],
+        to[1] - e[1] + 0.45 * e[0],
+        to[0] - e[0] + 0.45 * e[1],
+        to[1] - e[1] - 0.45 * e[0]
+    );
+    canvas.raw(&format!(r#"<polygon points="{points}" fill="{INK}"/>"#));
+}
+
+/// One pixel a point, coloured by vorticity; white where there is no flow.
+fn heat(slice: &Slice, scale: &Scale) -> Result<Vec<u8>, ViewError> {
+    let pitch = slice.pitch();
+    let [half_x, half_z] = slice.half_size();
+    let side = |half: f64| ((2.0 * half / pitch).round().clamp(1.0, 4000.0)) as u32;
+    let (width, height) = (side(half_x), side(half_z));
+    let mut pixmap = Pixmap::new(width, height).ok_or_else(|| ViewError::Drawing {
+        reason: "a slice without points".to_owned(),
+    })?;
+    let pixels = pixmap.pixels_mut();
+    for p in &slice.points {
+        let column = ((p.x + half_x) / pitch).floor().max(0.0) as u32;
+        let row = ((half_z - p.z) / pitch).floor().max(0.0) as u32;
+        if column < width && row < height {
+            let [r, g, b] = scale.rgb(p.vorticity.unwrap_or(0.0));
+            let color = PremultipliedColorU8::from_rgba(r, g, b, 255);
+            pixels[(row * width + column) as usize] =
+                color.unwrap_or(PremultipliedColorU8::TRANSPARENT);
+        }
+    }
+    render::png(&pixmap)
+}

@@ -1,0 +1,194 @@
+//! Four knots untying side by side, each from its charged state to a released fibre, on a logarithmic clock.
+
+use super::stage::{Clip, Movie, N_FRAMES, Stage};
+use crate::error::ViewError;
+use crate::figures::series::line_path;
+use crate::plot::camera;
+use crate::plot::canvas::Canvas;
+use crate::plot::color::{INK, QUIET, Scale, VERMILION};
+use crate::plot::style::Style;
+use crate::plot::text;
+use crate::plot::tube::Tube;
+use nalgebra::Vector3;
+use topo_knots::KnotTable;
+use topo_lab::{ElasticScene, ShapeFrame, discharge_frames, tight_shapes};
+
+pub const MOVIE: Movie = Movie {
+    name: "movie-elastic",
+    title: "Knots untying",
+    caption: "Four charged knots after the cut, coloured by energy density, with their elastic \
+              energy; time runs logarithmically, the same for all.",
+    claim: "The relaxation dynamics depend strongly on knot type and twist.",
+    battery: "elastic",
+    clip,
+};
+
+/// Knot and twist of each quarter.
+const SHOWN: [(&str, f64); 4] = [("3_1", 0.0), ("7_4", 0.0), ("3_1", 2.0), ("7_4", 2.0)];
+/// The first frames show the charged state.
+const N_STILL: usize = 12;
+/// First time shown after the cut, in T_0.
+const FIRST: f64 = 0.01;
+
+struct Actor {
+    label: String,
+    frames: Vec<ShapeFrame>,
+    views: Vec<Vec<Vector3<f64>>>,
+    scale: Scale,
+}
+
+fn clip(stage: &Stage<'_>) -> Result<Clip, ViewError> {
+    let scene = ElasticScene::published(stage.quality.preset());
+    let table = KnotTable::builtin();
+    let names = ["3_1".to_owned(), "7_4".to_owned()];
+    let shapes = tight_shapes(
+        &names,
+        &table,
+        &scene.tighten,
+        stage.results,
+        stage.interrupt,
+        &|_| {},
+    )?;
+    let mut actors = Vec::new();
+    for (knot, twist) in SHOWN {
+        let frames = discharge_frames(&scene, knot, twist, 40.0, &shapes, &table, stage.interrupt)?;
+        crate::error::check(stage.interrupt)?;
+        actors.push(Actor::new(knot, twist, frames)?);
+    }
+    let last = actors
+        .iter()
+        .filter_map(|a| a.frames.last()?.time)
+        .fold(10.0 * FIRST, f64::max);
+    let time = |k: usize| {
+        let part = k.saturating_sub(N_STILL) as f64 / (N_FRAMES - 1 - N_STILL) as f64;
+        (k >= N_STILL).then(|| FIRST * (last / FIRST).powf(part))
+    };
+    let frames = stage.frames(|k, canvas| {
+        let now = time(k);
+        let told = now.map_or("charged, closed".to_owned(), |t| {
+            format!("*t* = {} *T*_{{0}}", text::number(t, 3))
+        });
+        canvas.text(
+            480.0,
+            26.0,
+            &told,
+            Style::default().middle().bold().size(20.0),
+        );
+        for (q, actor) in actors.iter().enumerate() {
+            let corner = [480.0 * (q % 2) as f64, 36.0 + 342.0 * (q / 2) as f64];
+            actor.draw(canvas, corner, now, last)?;
+        }
+        Ok(())
+    })?;
+    let finding = actors
+        .iter()
+        .map(Actor::finding)
+        .collect::<Vec<_>>()
+        .join(" ");
+    Ok(Clip { frames, finding })
+}
+
+impl Actor {
+    fn new(knot: &str, twist: f64, frames: Vec<ShapeFrame>) -> Result<Self, ViewError> {
+        let Some(first) = frames.first() else {
+            return Err(ViewError::Drawing {
+                reason: format!("no frame of {knot}"),
+            });
+        };
+        let turn = camera::flattest(&first.vertices);
+        let views = frames
+            .iter()
+            .map(|f| camera::view(&f.vertices, &turn))
+            .collect();
+        let mut density: Vec<f64> = first.density.clone();
+        density.sort_by(f64::total_cmp);
+        let high = density[density.len() * 97 / 100].max(1e-12);
+        Ok(Self {
+            label: format!("{}, θ′*h* = {}", text::knot_name(knot), text::signed(twist)),
+            frames,
+            views,
+            scale: Scale::viridis_root(high),
+        })
+    }
+
+    /// The last frame at or before a time.
+    fn at(&self, time: Option<f64>) -> usize {
+        let before = |f: &ShapeFrame| f.time <= time;
+        self.frames.iter().rposition(before).unwrap_or(0)
+    }
+
+    fn draw(
+        &self,
+        canvas: &mut Canvas,
+        corner: [f64; 2],
+        time: Option<f64>,
+        last: f64,
+    ) -> Result<(), ViewError> {
+        let k = self.at(time);
+        let (frame, view) = (&self.frames[k], &self.views[k]);
+        // the eye only moves away, and never jumps
+        let unit = (0..=k)
+            .map(|i| {
+                let [x0, y0, x1, y1] = camera::extent(&self.views[i]);
+                (440.0 / (x1 - x0 + 3.0)).min(250.0 / (y1 - y0 + 3.0))
+            })
+            .fold(14.0, f64::min);
+        let [x0, y0, x1, y1] = camera::extent(view);
+        let tube = Tube::new(view, &frame.density, frame.time.is_none(), 1.0, &self.scale)
+            .ok_or_else(|| ViewError::Drawing {
+                reason: format!("{} is no curve", self.label),
+            })?;
+        let middle = [(x0 + x1) / 2.0, (y0 + y1) / 2.0];
+        canvas.tube(corner, [480.0, 262.0], middle, unit, &tube)?;
+        let style = Style::default().bold().size(16.0);
+        canvas.text(corner[0] + 16.0, corner[1] + 18.0, &self.label, style);
+        self.draw_energy(canvas, [corner[0] + 16.0, corner[1] + 270.0], k, last);
+        Ok(())
+    }
+
+    /// Energy against the logarithm of time, with a dot for now.
+    fn draw_energy(&self, canvas: &mut Canvas, at: [f64; 2], now: usize, last: f64) {
+        let (width, height) = (448.0, 52.0);
+        let top = self.frames[0].energy.max(1e-12);
+        let place = |f: &ShapeFrame| {
+            let t = f.time.unwrap_or(FIRST).max(FIRST);
+            [
+                at[0] + width * (t / FIRST).ln() / (last / FIRST).ln(),
+                at[1] + height * (1.0 - f.energy / top),
+            ]
+        };
+        canvas.line(
+            [at[0], at[1] + height],
+            [at[0] + width, at[1] + height],
+            QUIET,
+            0.8,
+        );
+        let path: Vec<[f64; 2]> = self.frames.iter().map(place).collect();
+        line_path(canvas, &path, QUIET, 1.0);
+        line_path(canvas, &path[..=now], INK, 2.0);
+        let [x, y] = path[now];
+        canvas.raw(&format!(
+            r#"<circle cx="{x:.2}" cy="{y:.2}" r="4" fill="{VERMILION}"/>"#
+        ));
+        let label = format!(
+            "*E*/*E*_{{0}} = {}",
+            text::number(self.frames[now].energy, 3)
+        );
+        let style = Style::default().end().size(13.0).halo();
+        canvas.text(at[0] + width, at[1] + 14.0, &label, style);
+    }
+
+    fn finding(&self) -> String {
+        let (first, last) = (self.frames.first(), self.frames.last());
+        let (energy, time) = (
+            first.map_or(0.0, |f| f.energy),
+            last.and_then(|f| f.time).unwrap_or(0.0),
+        );
+        format!(
+            "{}: {} E₀, released to 0.1 % in {} T₀.",
+            self.label.replace('*', ""),
+            text::number(energy, 3),
+            text::number(time, 3)
+        )
+    }
+}
