@@ -28,17 +28,17 @@ mod wish;
 pub use battery::Battery;
 pub use cost::Estimate;
 pub use elastic::{
-    ACCURACY_CASES, AccuracyRow, Cuts, Elastic, ElasticCase, ElasticReport, ElasticScene, NEAR_TIE, Names,
-    OwnKnots, Purpose, RESULTS_VERSION, ShapeFrame, Variant, discharge_frames, estimate_sweep,
-    measure_accuracy, perturbed, reference_scene, run_sweep,
+    ACCURACY_CASES, AccuracyRow, Cuts, Elastic, ElasticCase, ElasticReport, ElasticScene, NEAR_TIE,
+    Names, OwnKnots, Purpose, RESULTS_VERSION, ShapeFrame, Variant, discharge_frames,
+    estimate_sweep, measure_accuracy, perturbed, reference_scene, run_sweep,
 };
 pub use error::LabError;
 pub use folder::writable;
 pub use knots::{Shapes, knots_folder, tight_shapes, write_knots};
 pub use nematic::{
-    BucklingCase, BucklingRow, Colloid, FieldSnapshot, NEMATIC_RESULTS_VERSION, NematicCase, NematicFrame,
-    NematicReport, NematicScene, buckling_cases, buckling_study, estimate_nematic_sweep,
-    nematic_frames, run_nematic_sweep,
+    BucklingCase, BucklingRow, Colloid, FieldSnapshot, NEMATIC_RESULTS_VERSION, NematicCase,
+    NematicFrame, NematicReport, NematicScene, buckling_cases, buckling_study,
+    estimate_nematic_sweep, nematic_frames, run_nematic_sweep,
 };
 pub use preset::Preset;
 pub use progress::{Event, Shard, SweepSettings, with_jobs};
