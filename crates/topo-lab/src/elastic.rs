@@ -1,6 +1,7 @@
 //! Elastic scenes: knots, charged, cut and followed.
 
 mod accuracy;
+mod battery;
 mod by_wish;
 mod case;
 mod check;
@@ -22,6 +23,7 @@ mod variants;
 
 pub use accuracy::{ACCURACY_CASES, AccuracyRow, measure_accuracy, reference_scene};
 pub(crate) use accuracy::{MeasuredDischarge, exact_discharge, measured_discharge};
+pub use battery::Elastic;
 pub use case::ElasticCase;
 pub use choices::{Cuts, NEAR_TIE, Names};
 pub use frames::{ShapeFrame, discharge_frames};

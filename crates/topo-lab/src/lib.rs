@@ -7,6 +7,7 @@
 //! Elastic energies are in E_0 = E_b h² L and times in T_0 = 2 L η/(h E_b), with L the row's own length; nematic energies in
 //! L ξ_N and times in τ_N.
 
+mod battery;
 mod cost;
 mod elastic;
 mod error;
@@ -24,19 +25,20 @@ mod tradeoff;
 mod warnings;
 mod wish;
 
+pub use battery::Battery;
 pub use cost::Estimate;
 pub use elastic::{
-    ACCURACY_CASES, AccuracyRow, Cuts, ElasticCase, ElasticReport, ElasticScene, NEAR_TIE, Names,
-    OwnKnots, Purpose, RESULTS_VERSION, ShapeFrame, Variant, discharge_frames, estimate_sweep,
-    measure_accuracy, perturbed, reference_scene, run_sweep,
+    ACCURACY_CASES, AccuracyRow, Cuts, Elastic, ElasticCase, ElasticReport, ElasticScene, NEAR_TIE,
+    Names, OwnKnots, Purpose, RESULTS_VERSION, ShapeFrame, Variant, discharge_frames,
+    estimate_sweep, measure_accuracy, perturbed, reference_scene, run_sweep,
 };
 pub use error::LabError;
 pub use folder::writable;
 pub use knots::{Shapes, knots_folder, tight_shapes, write_knots};
 pub use nematic::{
-    BucklingCase, BucklingRow, FieldSnapshot, NEMATIC_RESULTS_VERSION, NematicCase, NematicFrame,
-    NematicReport, NematicScene, buckling_cases, buckling_study, estimate_nematic_sweep,
-    nematic_frames, run_nematic_sweep,
+    BucklingCase, BucklingRow, Colloid, FieldSnapshot, NEMATIC_RESULTS_VERSION, NematicCase,
+    NematicFrame, NematicReport, NematicScene, buckling_cases, buckling_study,
+    estimate_nematic_sweep, nematic_frames, run_nematic_sweep,
 };
 pub use preset::Preset;
 pub use progress::{Event, Shard, SweepSettings, with_jobs};

@@ -1,5 +1,6 @@
 //! Nematic scenes: colloids, charged, switched and followed.
 
+mod battery;
 mod by_wish;
 mod case;
 mod check;
@@ -16,6 +17,7 @@ mod scene;
 mod snapshot;
 mod sweep;
 
+pub use battery::Colloid;
 pub use case::NematicCase;
 pub use field::FieldSnapshot;
 pub use frames::{NematicFrame, nematic_frames};

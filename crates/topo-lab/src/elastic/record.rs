@@ -7,9 +7,11 @@ use serde_json::json;
 use topo_core::write_atomic_bytes;
 use topo_rod::{ChargedRod, Guards, RodSample, energy_density};
 
+use super::battery::Elastic;
 use super::identity::{RESULTS_VERSION, fingerprint};
 use super::job::{CaseJob, FollowedCut};
 use crate::LabError;
+use crate::battery::Battery;
 use crate::folder::{Outcome, digests, forget_file, make_folder};
 use topo_analysis::Timeline;
 use topo_analysis::{SweepRow, write_table};
@@ -212,7 +214,7 @@ pub(super) fn write_case(made: &MadeCase<'_>, folder: &Path) -> Result<(), LabEr
         .map(|r| r.discharge.record.report.ledger_residual)
         .fold(charged.record().report.ledger_residual, f64::max);
     let run = json!({
-        "schema": "topo-elastic-case/1",
+        "schema": Elastic.schema(),
         "fingerprint": fingerprint(scene, case, &entry),
         "case": case,
         "scene": scene,

@@ -11,12 +11,14 @@ use topo_nematic::{
     RunHooks, Threads,
 };
 
+use super::battery::Colloid;
 use super::case::NematicCase;
 use super::field::{self, FieldSnapshot};
 use super::identity::{RESULTS_VERSION, fingerprint};
 use super::scene::NematicScene;
 use super::snapshot::{Kept, RING_ORDER, centre};
 use crate::LabError;
+use crate::battery::Battery;
 use crate::folder::{Outcome, digests, forget_checkpoints, forget_file, make_folder};
 use crate::progress::Event;
 use crate::sweep::Place;
@@ -282,7 +284,7 @@ impl CaseRun<'_> {
         let series: Vec<NematicSample> = run.record.samples.iter().map(sample).collect();
         write_table(&folder.join("series.csv"), &series)?;
         let mut json = json!({
-            "schema": "topo-nematic-case/1",
+            "schema": Colloid.schema(),
             "fingerprint": fingerprint(self.scene, self.case),
             "case": self.case,
             "scene": self.scene,
