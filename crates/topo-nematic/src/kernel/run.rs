@@ -27,6 +27,9 @@ pub enum Threads {
 /// Sums of H:H (forces scaled for relaxation), H:X, X:X and of mass times H:H.
 pub(crate) type Sums = [f64; 4];
 
+/// What is done to a plane of cells: its number, its part of the output by components, scratch memory.
+type PlaneWork<'a, T> = dyn Fn(usize, [&mut [T]; 5], &mut Vec<T>) -> Sums + Sync + 'a;
+
 /// The molecular field of one domain in one precision.
 #[derive(Debug, Clone)]
 pub(crate) struct Kernel<T> {
@@ -185,11 +188,7 @@ impl<T: Real> Kernel<T> {
     }
 
     /// Calls `work` with each plane of cells, its part of `out` and scratch memory; the sums are the same for any number of threads.
-    pub(crate) fn by_planes(
-        &self,
-        out: &mut [T],
-        work: &(dyn Fn(usize, [&mut [T]; 5], &mut Vec<T>) -> Sums + Sync),
-    ) -> Sums {
+    pub(crate) fn by_planes(&self, out: &mut [T], work: &PlaneWork<'_, T>) -> Sums {
         let [nx, ny, nz] = self.domain.grid.cells();
         let plane = nx * ny;
         let [a, b, c, d, e] = self.components_mut(out);
