@@ -22,7 +22,6 @@ mod sweep;
 mod system;
 mod terms;
 mod tradeoff;
-mod warnings;
 mod wish;
 
 pub use battery::Battery;
@@ -43,7 +42,7 @@ pub use nematic::{
 pub use preset::Preset;
 pub use progress::{Event, Shard, SweepSettings, with_jobs};
 pub use scene::{Axis, AxisValue, Numbers, Scene};
-pub use stability::{StabilityRow, n_extremes, stability};
+pub use stability::{Ending, StabilityRow, n_extremes, stability};
 pub use sweep::{FailedCase, SweepReport};
 pub use system::System;
 pub use terms::{TermCost, term_costs};

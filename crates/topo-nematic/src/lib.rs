@@ -37,7 +37,9 @@ pub use battery::discharge::{Discharge, DischargeSettings};
 pub use battery::final_state::{FinalSource, FinalState};
 pub use battery::hooks::{Phase, Progress, RunHooks};
 pub use battery::minimum::MinimumReport;
-pub use battery::record::{ChargeReport, FlowReport, NematicSample, PhaseReport, RunRecord};
+pub use battery::record::{
+    ChargeReport, ChargeStop, FlowReport, NematicSample, PhaseReport, RunRecord,
+};
 pub use battery::switch::{SwitchSettings, SwitchTarget, SwitchedNematic};
 pub use boundary::{Boundary, FreeSurface};
 pub use defects::{CrossSection, DefectLine, defect_lines, director_field, order_field};

@@ -46,7 +46,7 @@ pub fn scene(
             cell(r.t99),
             cell(r.t_untie)
         );
-        for warning in r.warnings.split(';').filter(|w| !w.is_empty()) {
+        for warning in &r.warnings {
             say!("       warning: {warning}");
         }
     }

@@ -3,6 +3,7 @@
 use super::report::{Failures, Reporter, tell_taken};
 use super::{by_wish, estimate};
 use crate::error::CliError;
+use topo_analysis::Flow;
 use topo_analysis::nematic_resonance;
 use topo_lab::{NematicReport, NematicScene, SweepSettings, errors_of_colloids, run_nematic_sweep};
 
@@ -41,11 +42,11 @@ pub fn scene(scene: &NematicScene, settings: &SweepSettings) -> Result<(), CliEr
             r.cpu_seconds,
             r.peak_bytes as f64 / 1e6
         );
-        for warning in r.warnings.split(';').filter(|w| !w.is_empty()) {
+        for warning in &r.warnings {
             say!("       warning: {warning}");
         }
     }
-    for flow in ["off", "on"] {
+    for flow in [Flow::Off, Flow::On] {
         let rows: Vec<_> = report
             .rows
             .iter()

@@ -33,7 +33,7 @@ impl NematicSweep {
         };
         all.retain(|r| key(r) == main);
         all.sort_by_key(|r| r.q);
-        let (flowing, still): (Vec<_>, Vec<_>) = all.into_iter().partition(|r| r.flow == "on");
+        let (flowing, still): (Vec<_>, Vec<_>) = all.into_iter().partition(|r| r.flow.is_on());
         let rows = if still.is_empty() {
             flowing.clone()
         } else {
