@@ -20,7 +20,8 @@ mod progress;
 
 pub use batteries::{BATTERIES, Batteries};
 pub use cli::{
-    Any, BucklingArgs, Cli, Command, CompareArgs, CostArgs, Measure, SystemsArgs, WorkArgs,
+    Any, BucklingArgs, Cli, Command, CompareArgs, CostArgs, Measure, OF_FIGURES, SystemsArgs,
+    WorkArgs, quality,
 };
 pub use error::CliError;
 pub use interrupt::{check, install};

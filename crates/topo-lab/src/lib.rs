@@ -46,7 +46,7 @@ pub use progress::{Event, Shard, SweepSettings, with_jobs};
 pub use scene::{Axis, AxisValue, Document, Numbers, folder_of, numbers};
 pub use stability::{StabilityRow, n_extremes, stability};
 pub use sweep::{About, CaseFolder, CaseName, Experiment, FailedCase, Place, Row, SweepReport};
-pub use system::{Effort, System};
+pub use system::System;
 pub use terms::{TermCost, term_costs};
 pub use tradeoff::{
     CaseSet, PeakBytes, REFERENCE, Setting, TradeoffEvent, TradeoffRow, TradeoffRun, TradeoffWork,

@@ -7,11 +7,11 @@ use crate::movies::Movie;
 use crate::plot::font;
 use crate::plot::text::escape;
 use crate::provenance::Provenance;
-use crate::quality::Quality;
 use crate::reproduction::{self, Finding};
 use crate::viewer;
 use std::fmt::Write;
 use std::path::Path;
+use topo_lab::Preset;
 
 const STYLE: &str = "
 :root{color-scheme:light dark;--ink:#1b1f24;--quiet:#5d6670;--line:#dde1e6;--ground:#fff;--card:#f7f8fa;--link:#0060a0}
@@ -44,7 +44,7 @@ pub struct Page<'a> {
     /// Claims with what was found.
     pub claims: &'a [Finding],
     /// How much was computed.
-    pub quality: Quality,
+    pub quality: Preset,
     /// Where it comes from.
     pub provenance: &'a Provenance,
 }

@@ -6,16 +6,15 @@ use crate::error::CliError;
 use indicatif::DecimalBytes;
 use topo_knots::TightenSettings;
 use topo_lab::{
-    Battery, Elastic, ElasticScene, Estimate, NematicScene, Stage, SweepSettings,
+    Battery, Elastic, ElasticScene, Estimate, NematicScene, Preset, Stage, SweepSettings,
     estimate_nematic_sweep, estimate_sweep,
 };
-use topo_view::Quality;
 
 /// What the tables of an order are expected to take, and the drawing.
 pub fn of_order(order: &Order, settings: &SweepSettings) -> Result<Vec<Stage>, CliError> {
     let mut stages = Vec::new();
     let table = order.table;
-    let scene = ElasticScene::published(order.quality.preset());
+    let scene = ElasticScene::published(order.quality);
     if (order.elastic || order.knots) && !order.as_is {
         let shapes = |names: &[String], tighten| {
             Estimate::of_shapes(names, table, tighten, order.results, order.jobs)
@@ -38,7 +37,7 @@ pub fn of_order(order: &Order, settings: &SweepSettings) -> Result<Vec<Stage>, C
         stages.push(stage("variants", "case", variants));
     }
     if order.nematic {
-        let scene = NematicScene::published(order.quality.preset());
+        let scene = NematicScene::published(order.quality);
         let sweep = estimate_nematic_sweep(&scene, settings)?;
         stages.push(stage("nematic", "case", sweep));
     }
@@ -91,11 +90,11 @@ fn drawing_seconds(name: &str) -> f64 {
 }
 
 /// What drawing a finer sweep costs over drawing the draft: more edges, more cells, more cuts.
-fn drawing_factor(quality: Quality) -> f64 {
+fn drawing_factor(quality: Preset) -> f64 {
     match quality {
-        Quality::Draft => 1.0,
-        Quality::Standard => 1.4,
-        Quality::Paper => 2.0,
+        Preset::Draft => 1.0,
+        Preset::Standard => 1.4,
+        Preset::Paper | Preset::Reference => 2.0,
     }
 }
 

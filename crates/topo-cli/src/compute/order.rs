@@ -3,8 +3,7 @@
 use std::path::Path;
 
 use topo_knots::KnotTable;
-use topo_lab::Shard;
-use topo_view::Quality;
+use topo_lab::{Preset, Shard};
 use topo_view::figures::Figure;
 use topo_view::movies::Movie;
 
@@ -14,7 +13,7 @@ pub struct Order<'a> {
     /// Folder of the results.
     pub results: &'a Path,
     /// How much to compute.
-    pub quality: Quality,
+    pub quality: Preset,
     /// Number of threads; 0 is one a processor.
     pub jobs: usize,
     /// Recompute finished runs.
@@ -39,9 +38,9 @@ pub struct Order<'a> {
 
 /// Beyond draft the table of knots goes on to eight crossings, at the resolution of the standard preset, and always to the user's
 /// own knots.
-pub fn more_knots(quality: Quality, names: &[String], table: &KnotTable) -> Vec<String> {
+pub fn more_knots(quality: Preset, names: &[String], table: &KnotTable) -> Vec<String> {
     let builtin = KnotTable::builtin();
-    let n_crossings = if quality == Quality::Draft { 0 } else { 8 };
+    let n_crossings = if quality == Preset::Draft { 0 } else { 8 };
     let primes = table.primes_up_to(n_crossings);
     let own = table.iter().filter(|k| builtin.get(&k.name).is_err());
     let all = primes.chain(own).map(|k| k.name.clone());
