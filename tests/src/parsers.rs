@@ -18,7 +18,7 @@ use topo_knots::{
     CurveFile, CurveFormat, FrameChoice, Invariants, KnotEntry, KnotError, TightKnot, closed_braid,
     curve_text, n_components, parse_braid, parse_components,
 };
-use topo_lab::{ElasticScene, FieldSnapshot, NematicScene, Scene};
+use topo_lab::{Battery, Colloid, Elastic, ElasticScene, FieldSnapshot, NematicScene, parse_scene};
 use topo_nematic::{
     ChargeSettings, DischargeSettings, FlowParameters, NematicAccuracy, NematicBattery,
     NematicError, NematicParameters, RunHooks, SwitchSettings, SwitchTarget, SwitchedNematic,
@@ -41,6 +41,9 @@ pub const PARSERS: [(&str, Parser); 10] = [
     ("nematic_checkpoint", nematic_checkpoint),
 ];
 
+/// Batteries whose scenes there are.
+const BATTERIES: [&dyn Battery; 2] = [&Elastic, &Colloid];
+
 /// Longest braid word whose invariants are computed: beyond it a single input takes seconds.
 const LONGEST_WORD: usize = 10;
 
@@ -59,7 +62,7 @@ pub fn elastic_scene(data: &[u8]) {
         return;
     };
     // The table decides which battery it is; either way nothing may panic.
-    drop(Scene::parse(text, named()));
+    drop(parse_scene(&BATTERIES, text, named()));
     if let Ok(scene) = ElasticScene::parse(text, named()) {
         let written = scene.text();
         let again = ElasticScene::parse(&written, named());
@@ -72,7 +75,7 @@ pub fn nematic_scene(data: &[u8]) {
     let Ok(text) = std::str::from_utf8(data) else {
         return;
     };
-    drop(Scene::parse(text, named()));
+    drop(parse_scene(&BATTERIES, text, named()));
     if let Ok(scene) = NematicScene::parse(text, named()) {
         let written = scene.text();
         let again = NematicScene::parse(&written, named());

@@ -21,7 +21,8 @@ use topo_cli::commands::{buckling, cost};
 pub fn dispatch(cli: Cli) -> Result<ExitCode, CliError> {
     match cli.command {
         Command::Topo(command) => {
-            return topo_cli::commands::dispatch(command, Some(&workspace()));
+            let batteries = &topo_cli::BATTERIES;
+            return topo_cli::commands::dispatch(command, batteries, Some(&workspace()));
         }
         Command::Buckling(args) => {
             let text = buckling::run(&args.measured)?;

@@ -15,18 +15,24 @@ pub mod tradeoff;
 use std::path::Path;
 use std::process::ExitCode;
 
+use crate::batteries::Batteries;
 use crate::cli::{Command, Measure};
 use crate::error::CliError;
 
-/// Runs a command; only `knot identify` ends well in more ways than one. Figures note the commit of `workspace`, if there is one.
+/// Runs a command of a program that knows these batteries; only `knot identify` ends well in more ways than one. Figures note the
+/// commit of `workspace`, if there is one.
 ///
 /// # Errors
 /// What the command says, with an exit code.
-pub fn dispatch(command: Command, workspace: Option<&Path>) -> Result<ExitCode, CliError> {
+pub fn dispatch(
+    command: Command,
+    batteries: &Batteries<'_>,
+    workspace: Option<&Path>,
+) -> Result<ExitCode, CliError> {
     match command {
         Command::Knot(args) => return knot::run(&args),
         Command::Figures(args) => figures::run(&args, workspace),
-        Command::Run(args) => run::run(&args),
+        Command::Run(args) => run::run(&args, batteries),
         Command::Accuracy(args) => accuracy::run(&args),
         Command::Stability(args) => stability::run(&args),
         Command::Compare(args) => compare::run(&args),

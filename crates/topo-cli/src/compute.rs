@@ -1,25 +1,25 @@
 //! Where commands meet the physics: the tables behind figures, and a user's own scene.
 
 mod by_wish;
-mod elastic;
 pub mod estimate;
-mod nematic;
 mod order;
 mod report;
+mod scene;
 
 use crate::error::CliError;
 use crate::interrupt;
 use crate::progress::Progress;
 pub use order::Order;
-use order::{knots_of, more_knots};
+use order::more_knots;
 pub use report::Failures;
-use std::path::Path;
+pub use scene::scene;
+use scene::sweep;
 use std::time::Instant;
 use topo_core::Interrupt;
 use topo_knots::TightenSettings;
 use topo_lab::{
-    ElasticScene, Event, LabError, NematicScene, OwnKnots, Scene, SweepSettings, Wish,
-    tight_shapes, with_jobs, write_knots,
+    ElasticScene, Event, LabError, NematicScene, Rods, SweepSettings, tight_shapes, with_jobs,
+    write_knots,
 };
 use topo_view::provenance::Provenance;
 
@@ -57,7 +57,7 @@ pub fn tables(
     estimate::tell(&estimate::of_order(order, &settings)?);
     if order.knots && !order.as_is {
         let start = Instant::now();
-        let names = knots_of(&scene, table)?;
+        let names = scene.knots_used(table)?;
         let more = more_knots(order.quality, &names, table);
         let progress = Progress::start("knots", names.len() + more.len());
         let told = |event: Event<'_>| {
@@ -82,18 +82,24 @@ pub fn tables(
     }
     if order.elastic {
         let start = Instant::now();
-        let report = elastic::sweep(&scene, table, &settings)?;
-        failures.add(&report.failed, &scene.results(order.results));
-        provenance.estimated("elastic sweep", &report.estimate, report.wall_seconds);
+        let rods = Rods::of(&scene, table);
+        let swept = sweep(&rods, &settings)?;
+        failures.add(swept.failed(), &scene.results(order.results));
+        provenance.estimated("elastic sweep", swept.estimate(), swept.wall_seconds());
         provenance
             .wall_seconds
             .insert("elastic sweep".to_owned(), start.elapsed().as_secs_f64());
-        let runs = format!("{} computed, {} reused", report.n_computed, report.n_reused);
+        let runs = format!(
+            "{} computed, {} reused",
+            swept.n_computed(),
+            swept.n_reused()
+        );
         provenance.presets.insert("Elastic runs".to_owned(), runs);
         let start = Instant::now();
         for variant in scene.variants() {
-            let report = elastic::sweep(&variant.scene, table, &settings)?;
-            failures.add(&report.failed, &variant.scene.results(order.results));
+            let rods = Rods::of(&variant.scene, table);
+            let swept = sweep(&rods, &settings)?;
+            failures.add(swept.failed(), &variant.scene.results(order.results));
         }
         provenance
             .wall_seconds
@@ -102,63 +108,20 @@ pub fn tables(
     if order.nematic {
         let start = Instant::now();
         let scene = NematicScene::published(order.quality);
-        let report = nematic::sweep(&scene, &settings)?;
-        failures.add(&report.failed, &scene.results(order.results));
-        provenance.estimated("nematic sweep", &report.estimate, report.wall_seconds);
+        let swept = sweep(&scene, &settings)?;
+        failures.add(swept.failed(), &scene.results(order.results));
+        provenance.estimated("nematic sweep", swept.estimate(), swept.wall_seconds());
         let radius = format!("radius {} ξ_N", scene.nematic.radius);
         provenance.presets.insert("Colloid".to_owned(), radius);
-        let runs = format!("{} computed, {} reused", report.n_computed, report.n_reused);
+        let runs = format!(
+            "{} computed, {} reused",
+            swept.n_computed(),
+            swept.n_reused()
+        );
         provenance.presets.insert("Nematic runs".to_owned(), runs);
         provenance
             .wall_seconds
             .insert("nematic sweep".to_owned(), start.elapsed().as_secs_f64());
     }
     Ok(failures)
-}
-
-/// Runs a user's scene and prints its table.
-///
-/// A `wish` stands above what the file says of accuracy.
-pub fn scene(
-    file: &Path,
-    cuts: Option<&str>,
-    wish: Option<Wish>,
-    knots: Option<&Path>,
-    settings: &SweepSettings,
-) -> Result<(), CliError> {
-    let refused = |key, value: String, remedy: &str| CliError::Argument {
-        key,
-        value,
-        remedy: remedy.to_owned(),
-    };
-    match Scene::read(file)? {
-        Scene::Elastic(_) if settings.keep_fields => Err(refused(
-            "--fields",
-            "given".to_owned(),
-            "a fibre has no field to keep; leave it out",
-        )),
-        Scene::Elastic(mut scene) => {
-            scene.wish = wish.or(scene.wish);
-            if let Some(folder) = knots {
-                scene.own_knots = Some(OwnKnots::at(folder));
-            }
-            elastic::scene(*scene, cuts, settings)
-        }
-        Scene::Nematic(_) if knots.is_some() => Err(refused(
-            "--knots",
-            "given".to_owned(),
-            "a colloid has no knot; leave it out",
-        )),
-        Scene::Nematic(mut scene) => match cuts {
-            None => {
-                scene.wish = wish.or(scene.wish);
-                nematic::scene(&scene, settings)
-            }
-            Some(text) => Err(refused(
-                "--cuts",
-                text.to_owned(),
-                "a nematic scene has nothing to cut; leave it out",
-            )),
-        },
-    }
 }

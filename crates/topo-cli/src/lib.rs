@@ -1,7 +1,7 @@
 //! The program `topo`: its command line, and what each command does.
 //!
-//! A program is [`Cli`] parsed and [`end`] of [`run`]; another program takes [`Command`] and [`Measure`] into its own command line and
-//! calls [`commands::dispatch`] and [`commands::measure`].
+//! A program is [`main_with`] the batteries that it knows, such as [`BATTERIES`] and one of its own; another program takes [`Command`]
+//! and [`Measure`] into its own command line and calls [`commands::dispatch`] and [`commands::measure`].
 
 // these panic when nobody reads what they write: `say!` and `note!` do not
 #![deny(clippy::print_stdout, clippy::print_stderr)]
@@ -9,6 +9,7 @@
 #[macro_use]
 mod say;
 
+mod batteries;
 mod cli;
 pub mod commands;
 mod compute;
@@ -17,6 +18,7 @@ mod error;
 mod interrupt;
 mod progress;
 
+pub use batteries::{BATTERIES, Batteries};
 pub use cli::{
     Any, BucklingArgs, Cli, Command, CompareArgs, CostArgs, Measure, OF_FIGURES, SystemsArgs,
     WorkArgs, quality,
@@ -26,13 +28,20 @@ pub use interrupt::{check, install};
 
 use std::process::ExitCode;
 
-/// Runs what the command line says.
+use clap::Parser;
+
+/// The program: does what its command line says with these batteries, and says what went wrong.
+pub fn main_with(batteries: &Batteries<'_>) -> ExitCode {
+    end(run(Cli::parse(), batteries))
+}
+
+/// Runs what the command line says with these batteries.
 ///
 /// # Errors
 /// What the command says, with an exit code.
-pub fn run(cli: Cli) -> Result<ExitCode, CliError> {
+pub fn run(cli: Cli, batteries: &Batteries<'_>) -> Result<ExitCode, CliError> {
     match cli.command {
-        Any::Command(command) => commands::dispatch(command, None),
+        Any::Command(command) => commands::dispatch(command, batteries, None),
         Any::Measure(command) => commands::measure(&command).map(|()| ExitCode::SUCCESS),
     }
 }

@@ -2,8 +2,6 @@
 
 use std::process::ExitCode;
 
-use clap::Parser;
-
 fn main() -> ExitCode {
-    topo_cli::end(topo_cli::run(topo_cli::Cli::parse()))
+    topo_cli::main_with(&topo_cli::BATTERIES)
 }

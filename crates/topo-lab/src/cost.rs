@@ -7,8 +7,8 @@ use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 
-use crate::system::System;
 use probe::Pace;
+pub use probe::Probe;
 use topo_analysis::median;
 
 /// What the cases still to be computed are expected to take.
@@ -32,13 +32,14 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// What parts that take these processor seconds on the models' machine take here, one after another, all threads in each.
-    pub fn of_parts(seconds: &[f64], jobs: usize) -> Self {
+    /// What parts that take these processor seconds on the models' machine take here, at the pace of a probe, one after another,
+    /// all threads in each.
+    pub fn of_parts(seconds: &[f64], jobs: usize, probe: &'static Probe) -> Self {
         let costs: Vec<Cost> = seconds
             .iter()
             .map(|&seconds| Cost { seconds, bytes: 0 })
             .collect();
-        estimate(&costs, Speed::Probed(System::Rod), threads(jobs), false)
+        estimate(&costs, Speed::Probed(probe), threads(jobs), false)
     }
 
     /// Two stages, one after the other.
@@ -60,9 +61,9 @@ pub(crate) const EFFICIENCY: f64 = 0.93;
 /// The same of one case with all threads in it, as measured of colloids of six million cells on two.
 const WITHIN: f64 = 0.8;
 
-/// The expected cost of one case, on the machine that the models were measured on.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Cost {
+/// The expected cost of one case, on the machine that the battery's [`Probe`] was measured on.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Cost {
     /// Processor seconds.
     pub seconds: f64,
     /// Bytes held.
@@ -127,11 +128,11 @@ pub(crate) enum Speed {
         factor: f64,
         /// How many.
         n_cases: usize,
-        /// Of which system.
-        system: System,
+        /// How long its threads wait.
+        probe: &'static Probe,
     },
-    /// A short run of the system, made when it is asked for.
-    Probed(System),
+    /// A short run, made when it is asked for.
+    Probed(&'static Probe),
     /// It is that machine, idle.
     #[cfg(test)]
     Reference,
@@ -141,8 +142,8 @@ pub(crate) enum Speed {
 const FEWEST: usize = 3;
 
 impl Speed {
-    /// From the seconds that finished cases of a system were expected to take and took, or else from a probe.
-    pub(crate) fn of(system: System, finished: &[(f64, f64)]) -> Self {
+    /// From the seconds that finished cases were expected to take and took, or else from a probe.
+    pub(crate) fn of(probe: &'static Probe, finished: &[(f64, f64)]) -> Self {
         let ratios = finished
             .iter()
             .filter(|(model, taken)| *model > 0.0 && *taken > 0.0)
@@ -151,9 +152,9 @@ impl Speed {
             Some(factor) if ratios.clone().count() >= FEWEST => Self::Finished {
                 factor,
                 n_cases: ratios.count(),
-                system,
+                probe,
             },
-            _ => Self::Probed(system),
+            _ => Self::Probed(probe),
         }
     }
 
@@ -162,13 +163,13 @@ impl Speed {
             Self::Finished {
                 factor,
                 n_cases,
-                system,
+                probe,
             } => Pace {
                 factor,
                 n_cases,
-                ..probe::pace(system, threads)
+                ..probe::pace(probe, threads)
             },
-            Self::Probed(system) => probe::pace(system, threads),
+            Self::Probed(probe) => probe::pace(probe, threads),
             #[cfg(test)]
             Self::Reference => Pace {
                 factor: 1.0,
@@ -204,6 +205,7 @@ impl Stopwatch {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::elastic::ROD_PROBE;
 
     const ONE: Cost = Cost {
         seconds: 10.0,
@@ -233,10 +235,10 @@ mod tests {
 
     #[test]
     fn finished_cases_tell_the_speed_of_the_machine() {
-        let probed = Speed::Probed(System::Rod);
-        assert_eq!(Speed::of(System::Rod, &[(1.0, 9.0), (1.0, 9.0)]), probed);
+        let probed = Speed::Probed(&ROD_PROBE);
+        assert_eq!(Speed::of(&ROD_PROBE, &[(1.0, 9.0), (1.0, 9.0)]), probed);
         let finished = [(1.0, 2.0), (2.0, 4.0), (1.0, 50.0), (0.0, 3.0)];
-        let slow = Speed::of(System::Rod, &finished);
+        let slow = Speed::of(&ROD_PROBE, &finished);
         let told = estimate(&[ONE], slow, 1, true);
         assert_eq!((told.cpu_seconds, told.n_calibrated), (20.0, 3));
         assert!(told.wall_seconds >= told.cpu_seconds);

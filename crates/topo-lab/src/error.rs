@@ -54,6 +54,24 @@ pub enum LabError {
         /// What can be had.
         reason: String,
     },
+    /// An option of the command line does not apply to a scene, or has a value that cannot be.
+    #[error("{option} = {value}: {remedy}")]
+    Option {
+        /// The option.
+        option: &'static str,
+        /// Its value.
+        value: String,
+        /// What to do instead.
+        remedy: String,
+    },
+    /// A case of any battery is refused; the others go on.
+    #[error("{case}: {source}")]
+    Case {
+        /// Which case.
+        case: String,
+        /// Why.
+        source: Box<dyn std::error::Error + Send + Sync>,
+    },
     /// The rod refuses its parameters.
     #[error("{case}: {source}")]
     Rod {
@@ -121,7 +139,7 @@ impl LabError {
     /// Whether a case is refused for what it is, so that others can go on.
     pub(crate) fn is_of_one_case(&self) -> bool {
         match self {
-            Self::Rod { .. } | Self::Knot(_) | Self::Shape { .. } => true,
+            Self::Case { .. } | Self::Rod { .. } | Self::Knot(_) | Self::Shape { .. } => true,
             Self::Analysis(source) => matches!(source, topo_analysis::AnalysisError::Knot(_)),
             Self::Nematic { source, .. } => !matches!(source, topo_nematic::NematicError::File(_)),
             _ => false,

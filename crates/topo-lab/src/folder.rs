@@ -79,7 +79,7 @@ struct Versions {
 /// What a case came to.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(bound = "T: DeserializeOwned")]
-pub(crate) struct Outcome<T> {
+pub struct Outcome<T> {
     /// Its rows of the table.
     pub rows: Vec<T>,
     /// Why it did not come to its end.
@@ -113,8 +113,8 @@ pub(crate) fn left_of(folder: &Path) -> Option<Left> {
     })
 }
 
-/// Short hash of everything that the numbers of a case depend on.
-pub(crate) fn identity(all: &serde_json::Value) -> String {
+/// Short hash of everything that the numbers of a case depend on, the results version of its battery among it.
+pub fn identity(all: &serde_json::Value) -> String {
     blake3::hash(all.to_string().as_bytes()).to_hex()[..16].to_owned()
 }
 

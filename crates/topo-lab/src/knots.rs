@@ -10,9 +10,9 @@ use topo_knots::{KnotEntry, KnotTable, TightKnot, TightenSettings, ideal, is_kep
 
 use crate::LabError;
 use crate::cost::{Cost, Estimate, Speed, estimate, threads};
+use crate::elastic::ROD_PROBE;
 use crate::folder::make_folder;
 use crate::progress::Event;
-use crate::system::System;
 use topo_analysis::{KnotRow, write_table};
 
 /// Tight shapes by name.
@@ -84,7 +84,7 @@ impl Estimate {
         }
         Ok(estimate(
             &costs,
-            Speed::of(System::Knots, &[]),
+            Speed::of(&ROD_PROBE, &[]),
             threads(jobs),
             true,
         ))

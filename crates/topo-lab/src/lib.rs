@@ -1,7 +1,8 @@
 //! Experiments: from a scene to its tables.
 //!
-//! Reading order: [`Scene`] (what a TOML file says): [`ElasticScene`] → [`run_sweep`] (its cases, in parallel, resumable) →
-//! [`topo_analysis::SweepRow`] (the table); and [`NematicScene`] → [`run_nematic_sweep`] → [`topo_analysis::NematicRow`]. Then what is
+//! Reading order: [`Battery`] (what a program lists) → [`Scene`] (what a TOML file says) → [`Experiment`] (its cases) → [`Sweep`] (in
+//! parallel, resumable, into one table). [`Elastic`] fills them with [`ElasticScene`] and [`topo_analysis::SweepRow`], [`Colloid`] with
+//! [`NematicScene`] and [`topo_analysis::NematicRow`]; a battery of another crate does the same. Then what is
 //! made of many runs: [`tradeoff`] (what accuracy costs) and [`Wish`] (settings picked by it), [`stability`] (extremes), [`term_costs`].
 //!
 //! Elastic energies are in E_0 = E_b h² L and times in T_0 = 2 L η/(h E_b), with L the row's own length; nematic energies in
@@ -24,15 +25,15 @@ mod terms;
 mod tradeoff;
 mod wish;
 
-pub use battery::Battery;
-pub use cost::Estimate;
+pub use battery::{Battery, Checked, Options, Scene, Stage, Sweep, Swept, parse_scene, read_scene};
+pub use cost::{Cost, Estimate, Probe};
 pub use elastic::{
     ACCURACY_CASES, AccuracyRow, Cuts, Elastic, ElasticCase, ElasticReport, ElasticScene, NEAR_TIE,
-    Names, OwnKnots, Purpose, RESULTS_VERSION, ShapeFrame, Variant, discharge_frames,
+    Names, OwnKnots, Purpose, RESULTS_VERSION, Rods, ShapeFrame, Variant, discharge_frames,
     estimate_sweep, measure_accuracy, perturbed, reference_scene, run_sweep,
 };
 pub use error::LabError;
-pub use folder::writable;
+pub use folder::{Outcome, identity, writable};
 pub use knots::{Shapes, knots_folder, tight_shapes, write_knots};
 pub use nematic::{
     BucklingCase, BucklingRow, Colloid, FieldSnapshot, NEMATIC_RESULTS_VERSION, NematicCase,
@@ -41,9 +42,9 @@ pub use nematic::{
 };
 pub use preset::Preset;
 pub use progress::{Event, Shard, SweepSettings, with_jobs};
-pub use scene::{Axis, AxisValue, Numbers, Scene};
+pub use scene::{Axis, AxisValue, Document, Numbers, folder_of, numbers};
 pub use stability::{Ending, StabilityRow, n_extremes, stability};
-pub use sweep::{FailedCase, SweepReport};
+pub use sweep::{About, CaseFolder, CaseName, Experiment, FailedCase, Place, Row, SweepReport};
 pub use system::System;
 pub use terms::{TermCost, term_costs};
 pub use tradeoff::{

@@ -12,6 +12,9 @@ mod identity;
 mod keys;
 mod name;
 mod onset;
+mod options;
+mod print;
+mod probe;
 mod run;
 mod scene;
 mod snapshot;
@@ -23,6 +26,8 @@ pub use field::FieldSnapshot;
 pub use frames::{NematicFrame, nematic_frames};
 pub use identity::RESULTS_VERSION as NEMATIC_RESULTS_VERSION;
 pub use onset::{BucklingCase, BucklingRow, buckling_cases, buckling_study};
+#[cfg(test)]
+pub(crate) use probe::COLLOID_PROBE;
 pub use scene::NematicScene;
 pub(crate) use scene::fit;
 pub use sweep::{NematicReport, estimate_nematic_sweep, run_nematic_sweep};

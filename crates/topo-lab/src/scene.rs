@@ -1,20 +1,19 @@
-//! Scene files: what is the same for both batteries.
+//! Scene files: what is the same for every battery.
 
 mod axis;
 mod beside;
 mod document;
-mod either;
 mod folder;
 mod numbers;
 
 pub(crate) use axis::{Access, SweptKey, axes, check_count, product, put_axes, remove};
 pub use axis::{Axis, AxisValue};
 pub(crate) use beside::BesideQ;
-pub(crate) use document::{Document, read_text};
-pub use either::Scene;
-pub(crate) use folder::folder_of;
-pub use numbers::Numbers;
-pub(crate) use numbers::{numbers, repeated, repeated_number};
+pub use document::Document;
+pub(crate) use document::read_text;
+pub use folder::folder_of;
+pub use numbers::{Numbers, numbers};
+pub(crate) use numbers::{repeated, repeated_number};
 
 /// The dotted keys of all numbers and lists of numbers in a file.
 #[cfg(test)]

@@ -1,9 +1,11 @@
 //! The cases of a scene, in parallel, resumable, into one table: the same for every battery.
 
+mod dynamic;
 mod experiment;
 mod failed;
 mod mark;
 mod name;
+mod place;
 mod plan;
 
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -17,9 +19,11 @@ use crate::progress::{Event, SweepSettings, with_jobs};
 use plan::Plan;
 use topo_analysis::{Warnings, write_table};
 
-pub(crate) use experiment::{Experiment, Place, Row};
+pub use experiment::{Experiment, Row};
 pub use failed::FailedCase;
-pub(crate) use name::{CaseName, value};
+pub use name::CaseName;
+pub(crate) use name::value;
+pub use place::{About, CaseFolder, Place};
 
 /// What a sweep leaves behind.
 #[derive(Debug, Clone)]
@@ -98,7 +102,9 @@ pub(crate) fn run<E: Experiment>(
         let one = |&(k, expected): &(usize, f64)| {
             let folder = folder.join(&plan.names[k]);
             let place = Place {
+                battery: experiment.battery(),
                 name: &plan.names[k],
+                fingerprint: &plan.fingerprints[k],
                 folder: &folder,
                 settings,
                 is_alone: !plan.is_side_by_side,

@@ -46,21 +46,21 @@ fn nematic(quality: Preset) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use topo_lab::{ElasticScene, Scene};
+    use topo_lab::ElasticScene;
 
     #[test]
     fn the_scenes_are_those_of_the_figures() {
         for quality in [Preset::Draft, Preset::Standard, Preset::Paper] {
             let path = Path::new("elastic.toml");
-            let scene = Scene::parse(&elastic(quality), path).unwrap();
+            let scene = ElasticScene::parse(&elastic(quality), path).unwrap();
             let mut published = ElasticScene::published(quality);
             // each case has a twist of its own
             published.rod.twist = None;
-            assert_eq!(scene, Scene::Elastic(Box::new(published)));
+            assert_eq!(scene, published);
             let path = Path::new("nematic.toml");
-            let scene = Scene::parse(&nematic(quality), path).unwrap();
+            let scene = NematicScene::parse(&nematic(quality), path).unwrap();
             let published = NematicScene::published(quality);
-            assert_eq!(scene, Scene::Nematic(Box::new(published)));
+            assert_eq!(scene, published);
         }
     }
 }

@@ -1,12 +1,13 @@
 //! `topo run SCENE.toml`: one scene of the user's own.
 
 use super::settings::settings;
+use crate::batteries::Batteries;
 use crate::cli::RunArgs;
 use crate::compute;
 use crate::error::CliError;
-use topo_lab::{SweepSettings, Wish};
+use topo_lab::{Options, SweepSettings, Wish};
 
-pub fn run(args: &RunArgs) -> Result<(), CliError> {
+pub fn run(args: &RunArgs, batteries: &Batteries<'_>) -> Result<(), CliError> {
     if !(0.0..=1e9).contains(&args.checkpoint) {
         return Err(CliError::Argument {
             key: "--checkpoint",
@@ -20,13 +21,12 @@ pub fn run(args: &RunArgs) -> Result<(), CliError> {
         keep_fields: args.fields,
         ..settings(&args.work)?
     };
-    compute::scene(
-        &args.scene,
-        args.cuts.as_deref(),
-        wish(args)?,
-        args.knots.as_deref(),
-        &settings,
-    )
+    let mut options = Options::default();
+    options.cuts = args.cuts.as_deref();
+    options.knots = args.knots.as_deref();
+    options.fields = args.fields;
+    options.wish = wish(args)?;
+    compute::scene(batteries, &args.scene, &options, &settings)
 }
 
 /// What the options ask for instead of settings.

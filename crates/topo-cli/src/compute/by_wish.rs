@@ -7,9 +7,9 @@ use crate::error::CliError;
 use topo_analysis::{median, quantile, write_table};
 use topo_lab::{ErrorRow, Grant, Wish};
 
-/// Tells which setting grants a wish; `unit` is what its resolution counts.
-pub fn tell_grant(grant: &Grant, unit: &str) {
-    let p = &grant.point;
+/// Tells which setting grants a wish.
+pub fn tell_grant(grant: &Grant) {
+    let (p, unit) = (&grant.point, grant.unit);
     if let Some(reason) = &grant.stale {
         note!("warning: {reason}");
     }

@@ -1,97 +1,73 @@
 //! What a command will take, told before the work, and what it took.
 
-use super::order::{Order, knots_of, more_knots};
+use super::order::{Order, more_knots};
 use crate::duration::duration;
 use crate::error::CliError;
 use indicatif::DecimalBytes;
-use topo_knots::{KnotTable, TightenSettings};
-use topo_lab::Preset;
+use topo_knots::TightenSettings;
 use topo_lab::{
-    ElasticScene, Estimate, NematicScene, SweepSettings, estimate_nematic_sweep, estimate_sweep,
+    Battery, Elastic, ElasticScene, Estimate, NematicScene, Preset, Stage, SweepSettings,
+    estimate_nematic_sweep, estimate_sweep,
 };
 
-/// Stages of a command with what each is expected to take, as they follow each other; those with nothing to do are left out.
-pub type Stages = Vec<(&'static str, Estimate)>;
-
-const SHAPES: &str = "tight shapes";
-const FIGURES: &str = "drawing";
-const MOVIES: &str = "movies";
-
-/// The stages of a scene of rods: tight shapes, cases.
-pub fn of_elastic(
-    scene: &ElasticScene,
-    table: &KnotTable,
-    settings: &SweepSettings,
-) -> Result<Stages, CliError> {
-    let cases = estimate_sweep(scene, table, settings)?;
-    if cases.n_cases == 0 {
-        return Ok(Stages::new());
-    }
-    let names = knots_of(scene, table)?;
-    let shapes = Estimate::of_shapes(&names, table, &scene.tighten, &settings.out, settings.jobs)?;
-    Ok(worked([(SHAPES, shapes), ("cases", cases)]))
-}
-
-/// The stages of a scene of colloids: cases.
-pub fn of_nematic(scene: &NematicScene, settings: &SweepSettings) -> Result<Stages, CliError> {
-    Ok(worked([(
-        "cases",
-        estimate_nematic_sweep(scene, settings)?,
-    )]))
-}
-
 /// What the tables of an order are expected to take, and the drawing.
-pub fn of_order(order: &Order, settings: &SweepSettings) -> Result<Stages, CliError> {
-    let mut stages = Stages::new();
+pub fn of_order(order: &Order, settings: &SweepSettings) -> Result<Vec<Stage>, CliError> {
+    let mut stages = Vec::new();
     let table = order.table;
     let scene = ElasticScene::published(order.quality);
     if (order.elastic || order.knots) && !order.as_is {
         let shapes = |names: &[String], tighten| {
             Estimate::of_shapes(names, table, tighten, order.results, order.jobs)
         };
-        let names = knots_of(&scene, table)?;
+        let names = scene.knots_used(table)?;
         let mut all = shapes(&names, &scene.tighten)?;
         if order.knots {
             let more = more_knots(order.quality, &names, table);
             all = all.then(shapes(&more, &TightenSettings::standard())?);
         }
-        stages.push((SHAPES, all));
+        stages.push(Stage::shapes(all));
     }
     if order.elastic {
-        stages.push(("elastic", estimate_sweep(&scene, table, settings)?));
+        let sweep = estimate_sweep(&scene, table, settings)?;
+        stages.push(stage("elastic", "case", sweep));
         let mut variants = Estimate::default();
         for variant in scene.variants() {
             variants = variants.then(estimate_sweep(&variant.scene, table, settings)?);
         }
-        stages.push(("variants", variants));
+        stages.push(stage("variants", "case", variants));
     }
     if order.nematic {
         let scene = NematicScene::published(order.quality);
-        stages.push(("nematic", estimate_nematic_sweep(&scene, settings)?));
+        let sweep = estimate_nematic_sweep(&scene, settings)?;
+        stages.push(stage("nematic", "case", sweep));
     }
     if order.shard.is_none() {
         stages.extend(of_drawing(order));
     }
-    Ok(worked(stages))
+    stages.retain(|stage| stage.estimate.n_cases > 0);
+    Ok(stages)
 }
 
-fn of_drawing(order: &Order) -> Stages {
+fn stage(name: &'static str, part: &'static str, estimate: Estimate) -> Stage {
+    Stage {
+        name,
+        part,
+        estimate,
+    }
+}
+
+fn of_drawing(order: &Order) -> [Stage; 2] {
     let parts = |names: Vec<&str>| {
         let of = |name: &&str| drawing_seconds(name) * drawing_factor(order.quality);
-        Estimate::of_parts(&names.iter().map(of).collect::<Vec<_>>(), order.jobs)
+        let seconds: Vec<f64> = names.iter().map(of).collect();
+        Estimate::of_parts(&seconds, order.jobs, Elastic.probe())
     };
-    vec![
-        (
-            FIGURES,
-            parts(order.figures.iter().map(|f| f.name).collect()),
-        ),
-        (MOVIES, parts(order.movies.iter().map(|m| m.name).collect())),
+    let figures = parts(order.figures.iter().map(|f| f.name).collect());
+    let movies = parts(order.movies.iter().map(|m| m.name).collect());
+    [
+        stage("drawing", "figure", figures),
+        stage("movies", "movie", movies),
     ]
-}
-
-fn worked(stages: impl IntoIterator<Item = (&'static str, Estimate)>) -> Stages {
-    let stages = stages.into_iter();
-    stages.filter(|(_, e)| e.n_cases > 0).collect()
 }
 
 /// Processor seconds of figures and movies at draft quality on the models' machine.
@@ -123,13 +99,14 @@ fn drawing_factor(quality: Preset) -> f64 {
 }
 
 /// Tells the estimate of a command on the terminal.
-pub fn tell(stages: &Stages) {
-    if let [(_, only)] = stages[..] {
-        note!("estimate: {}", text("cases", &only));
+pub fn tell(stages: &[Stage]) {
+    if let [only] = stages {
+        note!("estimate: {}", text("case", &only.estimate));
         return;
     }
-    for (name, estimate) in stages {
-        note!("estimate, {name}: {}", text(name, estimate));
+    for stage in stages {
+        let said = text(stage.part, &stage.estimate);
+        note!("estimate, {}: {said}", stage.name);
     }
     if let Some(all) = together(stages) {
         note!("estimate, together: {}", duration(all.wall_seconds));
@@ -137,18 +114,12 @@ pub fn tell(stages: &Stages) {
 }
 
 /// All stages, one after the other; `None` where there is nothing to do.
-pub fn together(stages: &Stages) -> Option<Estimate> {
-    stages.iter().map(|(_, e)| *e).reduce(Estimate::then)
+pub fn together(stages: &[Stage]) -> Option<Estimate> {
+    stages.iter().map(|s| s.estimate).reduce(Estimate::then)
 }
 
-/// The estimate of a stage in words.
-fn text(stage: &str, e: &Estimate) -> String {
-    let part = match stage {
-        SHAPES => "knot",
-        FIGURES => "figure",
-        MOVIES => "movie",
-        _ => "case",
-    };
+/// The estimate of so many parts in words.
+fn text(part: &str, e: &Estimate) -> String {
     let plural = if e.n_cases == 1 { "" } else { "s" };
     let mut text = format!(
         "{} {part}{plural}, {} on {} threads ({} of one processor)",
@@ -172,6 +143,8 @@ fn text(stage: &str, e: &Estimate) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use topo_knots::KnotTable;
+    use topo_lab::{Rods, Sweep};
 
     #[test]
     fn estimates_are_told_in_fitting_units() {
@@ -184,13 +157,13 @@ mod tests {
             ..Estimate::default()
         };
         assert_eq!(
-            text("elastic", &e),
+            text("case", &e),
             "238 cases, 2 minutes on 2 threads (3 minutes of one processor), up to 120.00 MB"
         );
         e.n_calibrated = 7;
         e.wall_seconds = 20_000.0;
         e.bytes = 2_300_000_000;
-        let told = text(SHAPES, &e);
+        let told = text("knot", &e);
         assert!(told.starts_with("238 knots, 6 hours") && told.contains("2.30 GB"));
         assert!(told.contains("7 finished"));
         for (seconds, words) in [
@@ -222,20 +195,19 @@ mod tests {
         };
         let mut scene = ElasticScene::published(topo_lab::Preset::Draft);
         (scene.knots, scene.twists) = (vec!["3_1".to_owned()], vec![0.0, 1.0]);
-        let stages = of_elastic(&scene, &KnotTable::builtin(), &settings).unwrap();
-        let names: Vec<_> = stages.iter().map(|(name, e)| (*name, e.n_cases)).collect();
-        assert_eq!(names, [(SHAPES, 1), ("cases", 2)]);
+        let table = KnotTable::builtin();
+        let rods = Rods::of(&scene, &table);
+        let stages = rods.stages(&settings).unwrap();
+        let parts = |s: &Stage| (s.name, s.part, s.estimate.n_cases);
+        let parts: Vec<_> = stages.iter().map(parts).collect();
+        assert_eq!(parts, [("tight shapes", "knot", 1), ("cases", "case", 2)]);
         let all = together(&stages).unwrap();
-        assert!(all.reference_seconds > stages[1].1.reference_seconds + 1.0);
+        assert!(all.reference_seconds > stages[1].estimate.reference_seconds + 1.0);
         // a shape that is kept, or not needed, costs nothing
         let settings = SweepSettings {
             only_finished: true,
             ..settings
         };
-        assert!(
-            of_elastic(&scene, &KnotTable::builtin(), &settings)
-                .unwrap()
-                .is_empty()
-        );
+        assert!(rods.stages(&settings).unwrap().is_empty());
     }
 }

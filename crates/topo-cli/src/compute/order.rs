@@ -3,12 +3,9 @@
 use std::path::Path;
 
 use topo_knots::KnotTable;
-use topo_lab::Preset;
-use topo_lab::{ElasticScene, Shard};
+use topo_lab::{Preset, Shard};
 use topo_view::figures::Figure;
 use topo_view::movies::Movie;
-
-use crate::error::CliError;
 
 /// The tables that figures need.
 #[derive(Debug)]
@@ -37,13 +34,6 @@ pub struct Order<'a> {
     pub figures: &'a [Figure],
     /// Movies made of them afterwards.
     pub movies: &'a [Movie],
-}
-
-/// Knots of a scene, each once.
-pub fn knots_of(scene: &ElasticScene, table: &KnotTable) -> Result<Vec<String>, CliError> {
-    let mut names: Vec<String> = scene.cases(table)?.into_iter().map(|c| c.knot).collect();
-    names.dedup();
-    Ok(names)
 }
 
 /// Beyond draft the table of knots goes on to eight crossings, at the resolution of the standard preset, and always to the user's

@@ -1,16 +1,28 @@
 //! The speed of this machine, told by a short run that is always the same.
 
-use std::sync::OnceLock;
+use std::collections::BTreeMap;
+use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
-use topo_core::{CpuClock, Interrupt};
-use topo_nematic::{
-    NematicAccuracy, NematicBattery, NematicParameters, RunHooks, SurfacePattern, Threads,
-};
-use topo_rod::{Accuracy, Guards, RodBattery, RodParameters};
+use topo_core::CpuClock;
 
-use crate::stability::rod::trefoil;
-use crate::system::System;
+/// A short run, always the same, whose time on this machine tells how much slower it is than the one that a battery's costs were
+/// measured on.
+#[derive(Debug, Clone, Copy)]
+pub struct Probe {
+    /// Of the battery; each name is measured once a process.
+    pub name: &'static str,
+    /// Processor seconds that it took there, with all processors at work; about a tenth of a second is enough.
+    pub reference_seconds: f64,
+    /// The run; `None` if it cannot be run here.
+    pub run: fn() -> Option<()>,
+}
+
+impl PartialEq for Probe {
+    fn eq(&self, other: &Self) -> bool {
+        self.name == other.name
+    }
+}
 
 /// How much slower a machine is than the models', and how long its threads wait.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -23,31 +35,27 @@ pub(crate) struct Pace {
     pub n_cases: usize,
 }
 
-/// Processor seconds of the runs on the models' machine, with both of its processors at work.
-const ROD_SECONDS: f64 = 0.089;
-const NEMATIC_SECONDS: f64 = 0.096;
 /// A probe that was over sooner says nothing.
 const LEAST: f64 = 1e-3;
 
-/// Paces of rods and of nematics.
-static PACES: [OnceLock<Pace>; 2] = [OnceLock::new(), OnceLock::new()];
+/// Paces by the name of the probe.
+static PACES: Mutex<BTreeMap<&'static str, Pace>> = Mutex::new(BTreeMap::new());
 
-/// The pace of this machine in a system, measured at the first call; knots go at the pace of rods.
-pub(super) fn pace(system: System, threads: usize) -> Pace {
-    let (place, probe, reference): (_, fn() -> Option<()>, _) = match system {
-        System::Rod | System::Knots => (0, rod, ROD_SECONDS),
-        System::Nematic => (1, nematic, NEMATIC_SECONDS),
-    };
-    *PACES[place].get_or_init(|| measured(probe, reference, threads))
+/// The pace of this machine in a probe, measured at the first call.
+pub(super) fn pace(probe: &Probe, threads: usize) -> Pace {
+    // held while it is measured, so that two probes do not disturb each other
+    let mut paces = PACES.lock().unwrap_or_else(PoisonError::into_inner);
+    let known = paces.entry(probe.name);
+    *known.or_insert_with(|| measured(probe, threads))
 }
 
 /// Runs the probe in all threads at once, as cases do: they share caches, memory and, on a busy machine, processors.
-fn measured(probe: fn() -> Option<()>, reference: f64, threads: usize) -> Pace {
+fn measured(probe: &Probe, threads: usize) -> Pace {
     let most = std::thread::available_parallelism().map_or(1, usize::from);
     let n = threads.clamp(1, most);
     let timed = || {
         let (clock, start) = (CpuClock::start(), Instant::now());
-        probe().map(|()| (clock.seconds(), start.elapsed().as_secs_f64()))
+        (probe.run)().map(|()| (clock.seconds(), start.elapsed().as_secs_f64()))
     };
     let runs: Vec<Option<(f64, f64)>> = std::thread::scope(|scope| {
         let spawned: Vec<_> = (0..n).map(|_| scope.spawn(timed)).collect();
@@ -56,7 +64,7 @@ fn measured(probe: fn() -> Option<()>, reference: f64, threads: usize) -> Pace {
             .map(|thread| thread.join().ok().flatten())
             .collect()
     });
-    pace_of(&runs, reference, threads as f64 / n as f64)
+    pace_of(&runs, probe.reference_seconds, threads as f64 / n as f64)
 }
 
 /// The pace that runs of (processor, elapsed) seconds tell when `crowd` threads share a processor; that of the models' machine
@@ -79,52 +87,11 @@ fn pace_of(runs: &[Option<(f64, f64)>], reference: f64, crowd: f64) -> Pace {
     }
 }
 
-/// The charge of a twisted trefoil of 200 edges; `None` if it cannot be run.
-fn rod() -> Option<()> {
-    let rod = RodParameters {
-        twist: Some(1.0),
-        ..RodParameters::default()
-    };
-    let accuracy = Accuracy {
-        tolerance: ROD_TOLERANCE,
-        ..Accuracy::default()
-    };
-    let battery = RodBattery::new(&rod, &accuracy, Guards::default(), &trefoil()).ok()?;
-    let settings = topo_rod::ChargeSettings::default();
-    battery.charge(&settings, &Interrupt::new()).ok()?;
-    Some(())
-}
-
-/// The first steps of the charge of a colloid of 70 000 cells; `None` if it cannot be run.
-fn nematic() -> Option<()> {
-    let colloid = NematicParameters {
-        radius: 12.0,
-        spacing: 1.5,
-        pattern: SurfacePattern::Charge(2),
-        ..NematicParameters::default()
-    };
-    let settings = topo_nematic::ChargeSettings {
-        max_steps: NEMATIC_STEPS,
-        ..topo_nematic::ChargeSettings::default()
-    };
-    let accuracy = NematicAccuracy {
-        threads: Threads::One,
-        ..NematicAccuracy::default()
-    };
-    let battery = NematicBattery::new(&colloid, &accuracy).ok()?;
-    let stop = Interrupt::new();
-    battery.charge(&settings, &mut RunHooks::new(&stop)).ok()?;
-    Some(())
-}
-
-/// Tolerance of the probe's rod, in h.
-const ROD_TOLERANCE: f64 = 2e-4;
-/// Steps of the probe's colloid.
-const NEMATIC_STEPS: u64 = 75;
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::elastic::ROD_PROBE;
+    use crate::nematic::COLLOID_PROBE;
 
     #[test]
     fn slow_and_busy_machines_show() {
@@ -144,20 +111,20 @@ mod tests {
 
     #[test]
     fn a_machine_is_probed_once() {
-        let first = pace(System::Nematic, 1);
+        let first = pace(&COLLOID_PROBE, 1);
         assert!(first.factor > 0.0 && first.waiting >= 1.0);
         // no two runs take the same time to the nanosecond
-        assert_eq!(pace(System::Nematic, 2), first);
-        assert_eq!(pace(System::Knots, 1), pace(System::Rod, 1));
+        assert_eq!(pace(&COLLOID_PROBE, 2), first);
+        assert_ne!(pace(&ROD_PROBE, 1), first);
     }
 
     /// Processor seconds of the probes here, to set their constants by.
     #[test]
     fn probes_come_to_their_end() {
-        for (name, probe) in [("rod", rod as fn() -> Option<()>), ("nematic", nematic)] {
+        for probe in [&ROD_PROBE, &COLLOID_PROBE] {
             let clock = CpuClock::start();
-            assert_eq!(probe(), Some(()), "{name}");
-            println!("{name}: {:.3} s", clock.seconds());
+            assert_eq!((probe.run)(), Some(()), "{}", probe.name);
+            println!("{}: {:.3} s", probe.name, clock.seconds());
         }
     }
 }

@@ -1,13 +1,23 @@
 //! Knotted fibres, as one battery among others.
 
+use std::path::Path;
+
 use super::identity::RESULTS_VERSION;
-use crate::battery::Battery;
+use super::probe::ROD_PROBE;
+use super::scene::ElasticScene;
+use crate::LabError;
+use crate::battery::{Battery, Scene};
+use crate::cost::Probe;
 
 /// Knotted elastic fibres.
 #[derive(Debug, Clone, Copy)]
 pub struct Elastic;
 
 impl Battery for Elastic {
+    fn name(&self) -> &'static str {
+        "elastic"
+    }
+
     fn table(&self) -> &'static str {
         "rod"
     }
@@ -22,5 +32,13 @@ impl Battery for Elastic {
 
     fn results(&self) -> u32 {
         RESULTS_VERSION
+    }
+
+    fn probe(&self) -> &'static Probe {
+        &ROD_PROBE
+    }
+
+    fn parse(&self, text: &str, path: &Path) -> Result<Box<dyn Scene>, LabError> {
+        Ok(Box::new(ElasticScene::parse(text, path)?))
     }
 }

@@ -1,20 +1,14 @@
 //! The folder of a case: charged state, series, snapshots, and `run.json` that marks it complete.
 
-use std::path::Path;
-
 use serde::Serialize;
 use serde_json::json;
-use topo_core::write_atomic_bytes;
 use topo_rod::{ChargedRod, Guards, RodSample, energy_density};
 
-use super::battery::Elastic;
-use super::identity::{RESULTS_VERSION, fingerprint};
 use super::job::{CaseJob, FollowedCut};
 use crate::LabError;
-use crate::battery::Battery;
-use crate::folder::{Outcome, digests, forget_file, make_folder};
-use topo_analysis::Timeline;
-use topo_analysis::{SweepRow, write_table};
+use crate::folder::Outcome;
+use crate::sweep::{About, Place, value};
+use topo_analysis::{SweepRow, Timeline};
 
 /// Everything that a case has made.
 #[derive(Clone, Copy)]
@@ -118,7 +112,7 @@ fn snapshot_indices(samples: &[RodSample], start: f64) -> Vec<usize> {
 }
 
 /// Writes the folder of a case; what is there of an earlier run is replaced.
-pub(super) fn write_case(made: &MadeCase<'_>, folder: &Path) -> Result<(), LabError> {
+pub(super) fn write_case(made: &MadeCase<'_>, place: &Place<'_>) -> Result<(), LabError> {
     let MadeCase {
         job,
         charged,
@@ -134,9 +128,7 @@ pub(super) fn write_case(made: &MadeCase<'_>, folder: &Path) -> Result<(), LabEr
         table,
     } = *job;
     let area = std::f64::consts::PI;
-    make_folder(folder)?;
-    // the mark of completeness of an earlier run goes first, so that a folder never mixes two
-    forget_file(&folder.join("run.json"))?;
+    let mut folder = place.open()?;
     let state = charged.state();
     let vertices: Vec<ChargedVertex> = (0..state.n_vertices())
         .map(|i| {
@@ -152,14 +144,14 @@ pub(super) fn write_case(made: &MadeCase<'_>, folder: &Path) -> Result<(), LabEr
             }
         })
         .collect();
-    write_table(&folder.join("charged.csv"), &vertices)?;
+    folder.table("charged.csv", &vertices)?;
     let series: Vec<_> = charged
         .record()
         .samples
         .iter()
         .map(|s| series_row(None, s, None))
         .collect();
-    write_table(&folder.join("charge.csv"), &series)?;
+    folder.table("charge.csv", &series)?;
     let mut series = Vec::new();
     let mut snapshots = Vec::new();
     for FollowedCut {
@@ -196,8 +188,8 @@ pub(super) fn write_case(made: &MadeCase<'_>, folder: &Path) -> Result<(), LabEr
             );
         }
     }
-    write_table(&folder.join("series.csv"), &series)?;
-    write_table(&folder.join("snapshots.csv"), &snapshots)?;
+    folder.table("series.csv", &series)?;
+    folder.table("snapshots.csv", &snapshots)?;
     let entry = table.get(&case.knot)?;
     let cuts: Vec<_> = runs
         .iter()
@@ -213,31 +205,23 @@ pub(super) fn write_case(made: &MadeCase<'_>, folder: &Path) -> Result<(), LabEr
         .iter()
         .map(|r| r.discharge.record.report.ledger_residual)
         .fold(charged.record().report.ledger_residual, f64::max);
-    let run = json!({
-        "schema": Elastic.schema(),
-        "fingerprint": fingerprint(scene, case, &entry),
-        "case": case,
-        "scene": scene,
-        "seed": case.seed,
-        "versions": { "topo": env!("CARGO_PKG_VERSION"), "results": RESULTS_VERSION },
-        "units": { "length": "h", "time": "T_0 = 2 L eta/(h E_b)", "energy": "E_0 = E_b h^2 L" },
-        "tube": charged.battery().tube(),
-        "start": { "length_over_radius": tight.length_over_radius, "knot": entry },
-        "guards": Guards::default(),
-        "ledger_residual": ledger_residual,
-        "charge": charged.record().report,
-        "cuts": cuts,
-        "rows": rows,
-        "failure": outcome.failure,
-        "files": digests(folder, &["charged.csv", "charge.csv", "series.csv", "snapshots.csv"]),
-        "warnings": rows.iter().map(|r| &r.warnings).filter(|w| !w.is_empty()).collect::<Vec<_>>(),
-        "timings": { "charge_cpu_seconds": charge_seconds, "cpu_seconds": rows.iter().map(|r| r.cpu_seconds).sum::<f64>() },
-    });
-    // written last: a folder with this file is complete
-    let mut text = serde_json::to_string_pretty(&run).unwrap_or_default();
-    text.push('\n');
-    Ok(write_atomic_bytes(
-        &folder.join("run.json"),
-        text.as_bytes(),
-    )?)
+    let about = About {
+        case: value(case),
+        scene: value(scene),
+        seed: Some(case.seed),
+        units: ["h", "T_0 = 2 L eta/(h E_b)", "E_0 = E_b h^2 L"],
+        ledger_residual,
+        more: json!({
+            "tube": charged.battery().tube(),
+            "start": { "length_over_radius": tight.length_over_radius, "knot": entry },
+            "guards": Guards::default(),
+            "ledger_residual": ledger_residual,
+            "charge": charged.record().report,
+            "cuts": cuts,
+        }),
+    };
+    let mut run = folder.about(outcome, about);
+    let cpu_seconds: f64 = rows.iter().map(|r| r.cpu_seconds).sum();
+    run["timings"] = json!({ "charge_cpu_seconds": charge_seconds, "cpu_seconds": cpu_seconds });
+    folder.finish(&run)
 }

@@ -1,7 +1,5 @@
 //! One case: charge a knot, cut it where the scene says, follow each discharge, and write a folder.
 
-use std::path::Path;
-
 use nalgebra::Vector3;
 use topo_core::{CpuClock, Interrupt, StopReason};
 use topo_knots::identify;
@@ -14,6 +12,7 @@ use super::job::{CaseJob, FollowedCut};
 use super::record::{MadeCase, write_case};
 use crate::LabError;
 use crate::folder::Outcome;
+use crate::sweep::Place;
 use topo_analysis::{DischargeTimes, ELASTIC_SHARES, SweepRow, Timeline, Warning, Warnings};
 
 /// Elastic parts of the energy, without contact.
@@ -95,10 +94,10 @@ pub(crate) fn charge(job: &CaseJob<'_>, interrupt: &Interrupt) -> Result<Charged
 /// Runs a case and writes its folder; `None` when interrupted, and then nothing is written.
 pub(crate) fn run(
     job: &CaseJob<'_>,
-    folder: &Path,
-    interrupt: &Interrupt,
+    place: &Place<'_>,
 ) -> Result<Option<Outcome<SweepRow>>, LabError> {
     let CaseJob { scene, case, .. } = *job;
+    let (folder, interrupt) = (place.folder, &place.settings.interrupt);
     let refuse = |source| LabError::Rod {
         case: scene.case_name(case),
         source,
@@ -176,7 +175,7 @@ pub(crate) fn run(
         outcome: &outcome,
         charge_seconds,
     };
-    let written = write_case(&made, folder);
+    let written = write_case(&made, place);
     if let Err(error) = written {
         // a folder without its run.json is of no use to anybody; what matters is the first error
         if let Err(left) = std::fs::remove_dir_all(folder) {

@@ -179,6 +179,16 @@ impl ElasticScene {
             .collect())
     }
 
+    /// Knots of the cases, each once.
+    ///
+    /// # Errors
+    /// As [`cases`](Self::cases).
+    pub fn knots_used(&self, table: &KnotTable) -> Result<Vec<String>, LabError> {
+        let mut names: Vec<String> = self.cases(table)?.into_iter().map(|c| c.knot).collect();
+        names.dedup();
+        Ok(names)
+    }
+
     /// The case of one knot at one twist; without a twist, none is modelled.
     pub(crate) fn case(&self, knot: &str, twist: Option<f64>) -> ElasticCase {
         ElasticCase {

@@ -1,32 +1,62 @@
 //! An elastic scene as an experiment: tight shapes first, then its cases.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 use topo_knots::{KnotTable, TightKnot};
 
+use super::battery::Elastic;
 use super::case::ElasticCase;
 use super::cost::cost_of;
-use super::identity::{RESULTS_VERSION, fingerprint};
+use super::identity::fingerprint;
 use super::job::CaseJob;
+use super::print;
 use super::run;
 use super::scene::ElasticScene;
 use crate::LabError;
+use crate::battery::{Battery, Stage};
 use crate::cost::{Cost, Estimate};
 use crate::folder::Outcome;
 use crate::knots::tight_shapes;
 use crate::progress::{Event, SweepSettings};
 use crate::sweep::{self, Experiment, Place, SweepReport};
-use crate::system::System;
+use crate::wish::{ErrorRow, Grant, errors_of_rods};
 use topo_analysis::SweepRow;
 
 /// What an elastic sweep leaves behind.
 pub type ElasticReport = SweepReport<SweepRow>;
 
-/// A scene with the knots that it may name.
-struct Rods<'a> {
-    scene: &'a ElasticScene,
-    table: &'a KnotTable,
+/// An elastic scene with the knots that it may name.
+#[derive(Debug, Clone)]
+pub struct Rods<'a> {
+    scene: Cow<'a, ElasticScene>,
+    table: Cow<'a, KnotTable>,
+}
+
+impl<'a> Rods<'a> {
+    /// The experiment of a scene.
+    pub fn of(scene: &'a ElasticScene, table: &'a KnotTable) -> Self {
+        Self {
+            scene: Cow::Borrowed(scene),
+            table: Cow::Borrowed(table),
+        }
+    }
+
+    /// The experiment of a scene of its own.
+    pub(super) fn owned(scene: ElasticScene, table: KnotTable) -> Self {
+        Self {
+            scene: Cow::Owned(scene),
+            table: Cow::Owned(table),
+        }
+    }
+
+    fn with(&self, scene: ElasticScene) -> Self {
+        Self {
+            scene: Cow::Owned(scene),
+            ..self.clone()
+        }
+    }
 }
 
 impl Experiment for Rods<'_> {
@@ -35,8 +65,9 @@ impl Experiment for Rods<'_> {
     /// Tight shapes by name; why not where there is none.
     type Start = BTreeMap<String, Result<TightKnot, String>>;
 
-    const RESULTS: u32 = RESULTS_VERSION;
-    const SYSTEM: System = System::Rod;
+    fn battery(&self) -> &'static dyn Battery {
+        &Elastic
+    }
 
     fn folder(&self) -> &str {
         &self.scene.folder
@@ -47,7 +78,7 @@ impl Experiment for Rods<'_> {
     }
 
     fn cases(&self) -> Result<Vec<ElasticCase>, LabError> {
-        self.scene.cases(self.table)
+        self.scene.cases(&self.table)
     }
 
     fn name(&self, case: &ElasticCase) -> String {
@@ -56,7 +87,7 @@ impl Experiment for Rods<'_> {
 
     fn fingerprint(&self, case: &ElasticCase) -> Result<String, LabError> {
         let entry = self.table.get(&case.knot)?;
-        Ok(fingerprint(self.scene, case, &entry))
+        Ok(fingerprint(&self.scene, case, &entry))
     }
 
     fn blank_row(&self, case: &ElasticCase) -> SweepRow {
@@ -65,7 +96,14 @@ impl Experiment for Rods<'_> {
 
     fn cost(&self, case: &ElasticCase, n_rows: Option<usize>) -> Result<Cost, LabError> {
         let entry = self.table.get(&case.knot)?;
-        Ok(cost_of(self.scene, case, &entry, n_rows))
+        Ok(cost_of(&self.scene, case, &entry, n_rows))
+    }
+
+    fn stages_before(&self, settings: &SweepSettings) -> Result<Vec<Stage>, LabError> {
+        let Self { scene, table } = self;
+        let (names, out) = (scene.knots_used(table)?, &settings.out);
+        let estimate = Estimate::of_shapes(&names, table, &scene.tighten, out, settings.jobs)?;
+        Ok(vec![Stage::shapes(estimate)])
     }
 
     fn prepare(
@@ -80,7 +118,7 @@ impl Experiment for Rods<'_> {
         let shape = |name: String| {
             let made = tight_shapes(
                 std::slice::from_ref(&name),
-                self.table,
+                &self.table,
                 &self.scene.tighten,
                 &settings.out,
                 &settings.interrupt,
@@ -118,12 +156,35 @@ impl Experiment for Rods<'_> {
             None => return Ok(None),
         };
         let job = CaseJob {
-            scene: self.scene,
+            scene: &self.scene,
             case,
             tight,
-            table: self.table,
+            table: &self.table,
         };
-        run::run(&job, place.folder, &place.settings.interrupt)
+        run::run(&job, place)
+    }
+
+    fn header(&self) -> String {
+        print::HEADER.to_owned()
+    }
+
+    fn line(&self, row: &SweepRow) -> String {
+        print::line(row)
+    }
+
+    fn pick(&mut self, jobs: usize) -> Result<Option<Grant>, LabError> {
+        let (scene, grant) = self.scene.granted(&self.table, jobs)?;
+        *self = self.with(scene);
+        Ok(grant)
+    }
+
+    fn coarser(&self, grant: &Grant, rows: &[SweepRow]) -> Result<Option<Self>, LabError> {
+        let scene = self.scene.check_of(&self.table, grant, rows)?;
+        Ok(Some(self.with(scene)))
+    }
+
+    fn errors(&self, grant: &Grant, rows: &[SweepRow], coarser: &[SweepRow]) -> Vec<ErrorRow> {
+        errors_of_rods(grant, rows, coarser)
     }
 }
 
@@ -141,7 +202,7 @@ pub fn run_sweep(
     settings: &SweepSettings,
     progress: &(dyn Fn(Event<'_>) + Sync),
 ) -> Result<ElasticReport, LabError> {
-    sweep::run(&Rods { scene, table }, settings, progress)
+    sweep::run(&Rods::of(scene, table), settings, progress)
 }
 
 /// What [`run_sweep`] is expected to take for what is not finished, the start shapes not counted.
@@ -153,7 +214,7 @@ pub fn estimate_sweep(
     table: &KnotTable,
     settings: &SweepSettings,
 ) -> Result<Estimate, LabError> {
-    sweep::estimate(&Rods { scene, table }, settings)
+    sweep::estimate(&Rods::of(scene, table), settings)
 }
 
 #[cfg(test)]
@@ -162,6 +223,7 @@ mod tests {
     use std::sync::atomic::Ordering;
 
     use super::*;
+    use crate::RESULTS_VERSION;
 
     const SCENE: &str = "[rod]\nknot = \"3_1\"\ntwist = [0.0, 1.0]\n[rod.contact]\n[rod.friction]\n[charge]\nduration = 0.05\n[discharge]\nuntil_released = 0.3\nclosures = 4\n[accuracy]\nedges = 60\ntolerance = 1e-2\n";
 

@@ -1,13 +1,23 @@
 //! Colloids in a nematic, as one battery among others.
 
+use std::path::Path;
+
 use super::identity::RESULTS_VERSION;
-use crate::battery::Battery;
+use super::probe::COLLOID_PROBE;
+use super::scene::NematicScene;
+use crate::LabError;
+use crate::battery::{Battery, Scene};
+use crate::cost::Probe;
 
 /// Charged colloids in a nematic.
 #[derive(Debug, Clone, Copy)]
 pub struct Colloid;
 
 impl Battery for Colloid {
+    fn name(&self) -> &'static str {
+        "nematic"
+    }
+
     fn table(&self) -> &'static str {
         "nematic"
     }
@@ -22,5 +32,13 @@ impl Battery for Colloid {
 
     fn results(&self) -> u32 {
         RESULTS_VERSION
+    }
+
+    fn probe(&self) -> &'static Probe {
+        &COLLOID_PROBE
+    }
+
+    fn parse(&self, text: &str, path: &Path) -> Result<Box<dyn Scene>, LabError> {
+        Ok(Box::new(NematicScene::parse(text, path)?))
     }
 }

@@ -2,26 +2,23 @@
 
 use serde_json::json;
 use topo_analysis::{
-    DischargeTimes, NEMATIC_SHARES, NematicRow, NematicSample, Warnings, late_rate, write_table,
+    DischargeTimes, NEMATIC_SHARES, NematicRow, NematicSample, Warnings, late_rate,
 };
-use topo_core::{FileError, StopReason, load_checkpoint, save_checkpoint, write_atomic_bytes};
+use topo_core::{FileError, StopReason, load_checkpoint, save_checkpoint};
 use topo_nematic::{
     ChargeReport, ChargedNematic, Discharge, DischargeSettings, FinalSource, FlowCoupling,
     MinimumState, NematicAccuracy, NematicBattery, NematicError, NematicState, Phase, Progress,
     RunHooks, Threads,
 };
 
-use super::battery::Colloid;
 use super::case::NematicCase;
 use super::field::{self, FieldSnapshot};
-use super::identity::{RESULTS_VERSION, fingerprint};
 use super::scene::NematicScene;
 use super::snapshot::{Kept, RING_ORDER, centre};
 use crate::LabError;
-use crate::battery::Battery;
-use crate::folder::{Outcome, digests, forget_checkpoints, forget_file, make_folder};
+use crate::folder::{Outcome, forget_checkpoints, forget_file, make_folder};
 use crate::progress::Event;
-use crate::sweep::Place;
+use crate::sweep::{About, Place, value};
 
 /// Schema of the checkpoint of snapshots.
 const KEPT: &str = "nematic-snapshots/4";
@@ -57,10 +54,7 @@ impl CaseRun<'_> {
     }
 
     fn tell(&self, p: &Progress) {
-        (self.place.progress)(Event::Working {
-            name: self.place.name,
-            what: &told(p),
-        });
+        self.place.working(&told(p));
     }
 
     fn attempt(&self) -> Result<Option<Outcome<NematicRow>>, LabError> {
@@ -81,8 +75,8 @@ impl CaseRun<'_> {
         };
         let battery = NematicBattery::new(&self.case.nematic, &accuracy).map_err(refuse)?;
         let mut tell = |p: &Progress| self.tell(p);
-        let mark = fingerprint(self.scene, self.case);
-        forget_checkpoints(folder, &mark)?;
+        let mark = self.place.fingerprint;
+        forget_checkpoints(folder, mark)?;
         let checkpoint = |phase: &str| folder.join(format!("{phase}-{mark}.checkpoint"));
         let mut hooks = RunHooks::new(interrupt)
             .with_progress(&mut tell)
@@ -256,53 +250,42 @@ impl CaseRun<'_> {
         kept: &Kept,
         outcome: &Outcome<NematicRow>,
     ) -> Result<(), LabError> {
-        let Place {
-            folder, settings, ..
-        } = *self.place;
         let row = &outcome.rows[0];
         let mut all = Kept::default();
         all.keep(None, charged.state(), None);
         all.lines.extend(kept.lines.iter().cloned());
         all.slices.extend(kept.slices.iter().cloned());
         all.ring.extend(kept.ring.iter().cloned());
-        write_table(&folder.join("lines.csv"), &all.lines)?;
-        write_table(&folder.join("ring.csv"), &all.ring)?;
-        write_table(&folder.join("slices.csv"), &all.slices)?;
         let series: Vec<NematicSample> = run.record.samples.iter().map(sample).collect();
-        write_table(&folder.join("series.csv"), &series)?;
-        let mut json = json!({
-            "schema": Colloid.schema(),
-            "fingerprint": fingerprint(self.scene, self.case),
-            "case": self.case,
-            "scene": self.scene,
-            "versions": { "topo": env!("CARGO_PKG_VERSION"), "results": RESULTS_VERSION },
-            "units": { "length": "xi_N", "time": "tau_N", "energy": "L xi_N" },
-            "charge": charged.report(),
-            "energy_charged": charged.energy(),
-            "order_charged": charged.order(),
-            "minimum": charged.report().minimum,
-            "ring_charged": charged.ring(RING_ORDER),
-            "energy_removed_by_switch": run.removed,
-            "energy_after_switch": run.start,
-            "final_state": run.final_state,
-            "discharge": run.record.report,
-            "ledger_residual": run.record.report.ledger_residual,
-            "rows": outcome.rows,
-            "failure": outcome.failure,
-            "files": digests(folder, &["lines.csv", "ring.csv", "slices.csv", "series.csv"]),
-            "warnings": row.warnings,
-            "timings": { "cpu_seconds": row.cpu_seconds },
-        });
-        if settings.keep_fields {
-            json["n_fields"] = (kept.n_kept + 1).into();
+        let mut folder = self.place.open()?;
+        folder.table("lines.csv", &all.lines)?;
+        folder.table("ring.csv", &all.ring)?;
+        folder.table("slices.csv", &all.slices)?;
+        folder.table("series.csv", &series)?;
+        let about = About {
+            case: value(self.case),
+            scene: value(self.scene),
+            seed: None,
+            units: ["xi_N", "tau_N", "L xi_N"],
+            ledger_residual: run.record.report.ledger_residual,
+            more: json!({
+                "charge": charged.report(),
+                "energy_charged": charged.energy(),
+                "order_charged": charged.order(),
+                "minimum": charged.report().minimum,
+                "ring_charged": charged.ring(RING_ORDER),
+                "energy_removed_by_switch": run.removed,
+                "energy_after_switch": run.start,
+                "final_state": run.final_state,
+                "discharge": run.record.report,
+            }),
+        };
+        let mut json = folder.about(outcome, about);
+        json["warnings"] = value(&row.warnings);
+        if self.place.settings.keep_fields {
+            json.insert("n_fields".to_owned(), (kept.n_kept + 1).into());
         }
-        // written last: a folder with this file is complete
-        let mut text = serde_json::to_string_pretty(&json).unwrap_or_default();
-        text.push('\n');
-        Ok(write_atomic_bytes(
-            &folder.join("run.json"),
-            text.as_bytes(),
-        )?)
+        folder.finish(&json)
     }
 }
 

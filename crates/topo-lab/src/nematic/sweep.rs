@@ -4,18 +4,21 @@ use std::path::Path;
 
 use topo_nematic::{NematicBattery, Threads};
 
+use super::battery::Colloid;
 use super::case::NematicCase;
 use super::cost::case_cost;
 use super::field;
-use super::identity::{RESULTS_VERSION, fingerprint};
+use super::identity::fingerprint;
+use super::print;
 use super::run::CaseRun;
 use super::scene::NematicScene;
 use crate::LabError;
+use crate::battery::Battery;
 use crate::cost::{Cost, Estimate};
 use crate::folder::Outcome;
 use crate::progress::{Event, SweepSettings};
 use crate::sweep::{self, Experiment, Place, SweepReport};
-use crate::system::System;
+use crate::wish::{ErrorRow, Grant, errors_of_colloids};
 use topo_analysis::NematicRow;
 
 /// What a nematic sweep leaves behind.
@@ -26,8 +29,9 @@ impl Experiment for NematicScene {
     type Row = NematicRow;
     type Start = ();
 
-    const RESULTS: u32 = RESULTS_VERSION;
-    const SYSTEM: System = System::Nematic;
+    fn battery(&self) -> &'static dyn Battery {
+        &Colloid
+    }
 
     fn folder(&self) -> &str {
         &self.folder
@@ -97,6 +101,32 @@ impl Experiment for NematicScene {
             threads,
         }
         .run()
+    }
+
+    fn header(&self) -> String {
+        print::HEADER.to_owned()
+    }
+
+    fn line(&self, row: &NematicRow) -> String {
+        print::line(row)
+    }
+
+    fn findings(&self, rows: &[NematicRow]) -> Vec<String> {
+        print::resonances(rows)
+    }
+
+    fn pick(&mut self, jobs: usize) -> Result<Option<Grant>, LabError> {
+        let (scene, grant) = self.granted(jobs)?;
+        *self = scene;
+        Ok(grant)
+    }
+
+    fn coarser(&self, grant: &Grant, _rows: &[NematicRow]) -> Result<Option<Self>, LabError> {
+        Ok(Some(self.check_of(grant)))
+    }
+
+    fn errors(&self, grant: &Grant, rows: &[NematicRow], coarser: &[NematicRow]) -> Vec<ErrorRow> {
+        errors_of_colloids(grant, rows, coarser)
     }
 }
 

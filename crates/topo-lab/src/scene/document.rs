@@ -13,8 +13,8 @@ use crate::LabError;
 /// Longest value that a message repeats.
 const SHOWN: usize = 60;
 
-/// A scene file, read as far as its tables.
-pub(crate) struct Document<'a> {
+/// A scene file, read as far as its tables: it knows where each key stands, for messages.
+pub struct Document<'a> {
     text: &'a str,
     path: &'a Path,
     spans: DeTable<'a>,
@@ -57,7 +57,7 @@ impl<'a> Document<'a> {
     }
 
     /// The value of a dotted key, if the file has it; what belongs to `material` may stand in `nematic.material` too.
-    pub fn find(&self, key: &str) -> Option<Found<'_>> {
+    pub(crate) fn find(&self, key: &str) -> Option<Found<'_>> {
         let inside = || {
             key.starts_with("material.")
                 .then(|| format!("nematic.{key}"))

@@ -18,11 +18,11 @@ const TAKEN: [&str; 7] = [
 /// Longest name, in bytes: folders of names with a suffix must be possible everywhere.
 const LONGEST: usize = 100;
 
-/// The file's name without its ending: letters, digits, `-`, `_` and `.` as they are, all else as `-`.
+/// Folder of the results of a scene: its file's name without the ending, letters, digits, `-`, `_` and `.` as they are, all else as `-`.
 ///
 /// # Errors
 /// A name of which nothing is left, or one that a command writes its own results to.
-pub(crate) fn folder_of(path: &Path) -> Result<String, LabError> {
+pub fn folder_of(path: &Path) -> Result<String, LabError> {
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     let kept = |c: char| match c.is_alphanumeric() || matches!(c, '-' | '_' | '.') {
         true => c,

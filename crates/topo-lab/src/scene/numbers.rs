@@ -78,7 +78,7 @@ impl Numbers {
 ///
 /// # Errors
 /// Something else; no value, too many, one that is not finite, or the same one twice.
-pub(crate) fn numbers(document: &Document<'_>, key: &str) -> Result<Option<Vec<f64>>, LabError> {
+pub fn numbers(document: &Document<'_>, key: &str) -> Result<Option<Vec<f64>>, LabError> {
     let Some(found) = document.find(key) else {
         return Ok(None);
     };

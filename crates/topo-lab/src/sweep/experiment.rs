@@ -5,46 +5,58 @@ use std::path::Path;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
+use super::place::Place;
+use crate::battery::{Battery, Stage};
 use crate::cost::Cost;
 use crate::error::LabError;
 use crate::folder::Outcome;
 use crate::progress::{Event, SweepSettings};
-use crate::system::System;
+use crate::wish::{ErrorRow, Grant};
 use topo_analysis::Warnings;
 
-/// What a battery says so that its scenes can be swept.
-pub(crate) trait Experiment: Sync {
+/// What a battery says so that its scenes can be swept, and their tables printed.
+///
+/// Every experiment is a [`Sweep`](crate::Sweep): its cases run in parallel, in shards, are resumed where an earlier run stopped,
+/// and are gathered into `sweep.csv`.
+pub trait Experiment: Sync {
     /// One charge with its discharges.
     type Case: Sync;
     /// A row of its table.
     type Row: Row;
-    /// What cases start from, made once for all of them.
+    /// What cases start from, made once for all of them; `()` where there is nothing.
     type Start: Sync + Send;
 
-    /// Changes whenever the same scene gives other numbers than before.
-    const RESULTS: u32;
-    /// Whose speed tells how long its cases take.
-    const SYSTEM: System;
+    /// Whose experiment it is.
+    fn battery(&self) -> &'static dyn Battery;
 
-    /// Folder of the table below the output folder.
+    /// Folder of the table below the output folder: [`folder_of`](crate::folder_of) the scene's file.
     fn folder(&self) -> &str;
 
-    /// The scene with every value written out.
+    /// The scene with every value written out; it is kept beside the table, and tells another scene what differs.
     fn text(&self) -> String;
 
     /// The cases, in the order of the table.
+    ///
+    /// # Errors
+    /// A scene that makes no sense.
     fn cases(&self) -> Result<Vec<Self::Case>, LabError>;
 
-    /// Name of a case's folder, of no other case.
+    /// Name of a case's folder, of no other case: see [`CaseName`](crate::CaseName).
     fn name(&self, case: &Self::Case) -> String;
 
-    /// Hash of everything that the numbers of a case depend on.
+    /// Hash of everything that the numbers of a case depend on: see [`identity`](crate::identity).
+    ///
+    /// # Errors
+    /// A case that makes no sense.
     fn fingerprint(&self, case: &Self::Case) -> Result<String, LabError>;
 
     /// A row with the settings of a case only.
     fn blank_row(&self, case: &Self::Case) -> Self::Row;
 
     /// What a case is expected to take; a finished one with its number of rows.
+    ///
+    /// # Errors
+    /// A case that makes no sense.
     fn cost(&self, case: &Self::Case, n_rows: Option<usize>) -> Result<Cost, LabError>;
 
     /// Whether a case makes use of several threads when it has them for itself.
@@ -57,7 +69,18 @@ pub(crate) trait Experiment: Sync {
         true
     }
 
+    /// Stages of work before the cases, and what they are expected to take.
+    ///
+    /// # Errors
+    /// A scene that makes no sense.
+    fn stages_before(&self, _settings: &SweepSettings) -> Result<Vec<Stage>, LabError> {
+        Ok(Vec::new())
+    }
+
     /// What the cases to be computed start from.
+    ///
+    /// # Errors
+    /// What cannot be had; no case is run then.
     fn prepare(
         &self,
         todo: &[&Self::Case],
@@ -65,17 +88,60 @@ pub(crate) trait Experiment: Sync {
         progress: &(dyn Fn(Event<'_>) + Sync),
     ) -> Result<Self::Start, LabError>;
 
-    /// Runs a case and writes its folder; `None` when interrupted.
+    /// Runs a case and writes its folder through [`Place::open`]; `None` when
+    /// [interrupted](SweepSettings::interrupt).
+    ///
+    /// Its numbers depend on nothing but what its [fingerprint](Self::fingerprint) knows: neither on the number of threads, nor on
+    /// whether it was resumed.
+    ///
+    /// # Errors
+    /// [`LabError::Case`] where the case is refused: others go on. Any other error ends the sweep.
     fn run(
         &self,
         case: &Self::Case,
         start: &Self::Start,
         place: &Place<'_>,
     ) -> Result<Option<Outcome<Self::Row>>, LabError>;
+
+    /// The line above the rows of the printed table.
+    fn header(&self) -> String;
+
+    /// A row of the printed table, its warnings left out.
+    fn line(&self, row: &Self::Row) -> String;
+
+    /// Lines below the table.
+    fn findings(&self, _rows: &[Self::Row]) -> Vec<String> {
+        Vec::new()
+    }
+
+    /// Picks the settings that grant the wish of the scene; a battery without measured settings has no wishes.
+    ///
+    /// # Errors
+    /// A wish that no measured setting grants, with what can be had.
+    fn pick(&mut self, _jobs: usize) -> Result<Option<Grant>, LabError> {
+        Ok(None)
+    }
+
+    /// The coarser experiment whose difference to the runs `rows` of this one tells their error; nothing where there are no
+    /// wishes.
+    ///
+    /// # Errors
+    /// A scene that makes no sense.
+    fn coarser(&self, _grant: &Grant, _rows: &[Self::Row]) -> Result<Option<Self>, LabError>
+    where
+        Self: Sized,
+    {
+        Ok(None)
+    }
+
+    /// Errors of the runs `rows`, beside those of the [coarser](Self::coarser) experiment.
+    fn errors(&self, _grant: &Grant, _rows: &[Self::Row], _coarser: &[Self::Row]) -> Vec<ErrorRow> {
+        Vec::new()
+    }
 }
 
-/// A row of a sweep's table.
-pub(crate) trait Row: Serialize + DeserializeOwned + Clone + Send + Sync {
+/// A row of a sweep's table, one column a field.
+pub trait Row: Serialize + DeserializeOwned + Clone + Send + Sync {
     /// Processor seconds that it took.
     fn cpu_seconds(&self) -> f64;
 
@@ -83,21 +149,7 @@ pub(crate) trait Row: Serialize + DeserializeOwned + Clone + Send + Sync {
     fn warnings(&self) -> &Warnings;
 
     /// The row with the settings of another: finished cases of earlier programs may lack some.
-    fn with_settings_of(self, blank: &Self) -> Self;
-}
-
-/// Where and how a case runs.
-pub(crate) struct Place<'a> {
-    /// Its name.
-    pub name: &'a str,
-    /// Its folder.
-    pub folder: &'a Path,
-    /// Of the sweep.
-    pub settings: &'a SweepSettings,
-    /// Whether it has all threads for itself.
-    pub is_alone: bool,
-    /// Processor seconds that it is expected to take on the models' machine.
-    pub expected: f64,
-    /// Told where it is.
-    pub progress: &'a (dyn Fn(Event<'_>) + Sync),
+    fn with_settings_of(self, _blank: &Self) -> Self {
+        self
+    }
 }

@@ -20,14 +20,14 @@ const DIGITS: usize = 10;
 /// # Validation
 /// `names_tell_cases_apart`, `elastic_names_are_injective`, `nematic_names_are_injective`
 #[derive(Debug)]
-pub(crate) struct CaseName {
+pub struct CaseName {
     text: String,
     says_all: bool,
 }
 
 impl CaseName {
     /// A name that begins with a word.
-    pub(crate) fn of(first: &str) -> Self {
+    pub fn of(first: &str) -> Self {
         let name = Self {
             text: String::new(),
             says_all: true,
@@ -36,7 +36,7 @@ impl CaseName {
     }
 
     /// Adds a word; what does not belong into the name of a folder is replaced.
-    pub(crate) fn word(mut self, word: &str) -> Self {
+    pub fn word(mut self, word: &str) -> Self {
         if !self.text.is_empty() {
             self.text.push('_');
         }
@@ -49,7 +49,7 @@ impl CaseName {
     }
 
     /// Adds a number after its label.
-    pub(crate) fn number(self, label: &str, x: f64) -> Self {
+    pub fn number(self, label: &str, x: f64) -> Self {
         let (text, is_exact) = number(x);
         let mut name = self.word(&format!("{label}{text}"));
         name.says_all &= is_exact;
@@ -57,7 +57,7 @@ impl CaseName {
     }
 
     /// Adds a number with its sign and at least two decimals.
-    pub(crate) fn signed(self, label: &str, x: f64) -> Self {
+    pub fn signed(self, label: &str, x: f64) -> Self {
         let (text, is_exact) = [format!("{x:+.2}"), format!("{x:+}")]
             .into_iter()
             .find(|text| text.len() <= LONGEST_NUMBER && is_exactly(text, x))
@@ -68,7 +68,7 @@ impl CaseName {
     }
 
     /// Adds what differs from the usual settings; keys that begin with one of `but` are said elsewhere.
-    pub(crate) fn changes(mut self, settings: &Value, usual: &Value, but: &[&str]) -> Self {
+    pub fn changes(mut self, settings: &Value, usual: &Value, but: &[&str]) -> Self {
         let mut changed: Vec<(String, Option<Value>)> = Vec::new();
         differences("", Some(settings), Some(usual), &mut changed);
         changed.retain(|(key, _)| !but.iter().any(|b| key.starts_with(b)));
@@ -90,19 +90,19 @@ impl CaseName {
     }
 
     /// Notes settings that a name never spells out.
-    pub(crate) fn unsaid(mut self, settings: &Value, usual: &Value) -> Self {
+    pub fn unsaid(mut self, settings: &Value, usual: &Value) -> Self {
         self.says_all &= settings == usual;
         self
     }
 
     /// Notes a setting that the words do not say.
-    pub(crate) fn unsaid_if(mut self, is_unsaid: bool) -> Self {
+    pub fn unsaid_if(mut self, is_unsaid: bool) -> Self {
         self.says_all &= !is_unsaid;
         self
     }
 
     /// The name; `all` is everything that the numbers of the case depend on.
-    pub(crate) fn finish(self, all: impl FnOnce() -> Value) -> String {
+    pub fn finish(self, all: impl FnOnce() -> Value) -> String {
         if self.says_all {
             return self.text;
         }

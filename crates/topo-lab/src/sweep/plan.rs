@@ -15,6 +15,8 @@ pub(super) struct Plan<E: Experiment> {
     pub cases: Vec<E::Case>,
     /// Their folders.
     pub names: Vec<String>,
+    /// What tells their numbers apart.
+    pub fingerprints: Vec<String>,
     /// What earlier runs left of them.
     pub found: Vec<Earlier<E::Row>>,
     /// Whether cases run side by side.
@@ -33,14 +35,16 @@ impl<E: Experiment> Plan<E> {
         for case in &cases {
             known.push((experiment.name(case), experiment.fingerprint(case)?));
         }
-        mark::check(&folder, &experiment.text(), &known, E::RESULTS)?;
+        let battery = experiment.battery();
+        let version = battery.results();
+        mark::check(&folder, &experiment.text(), &known, version)?;
         let mut found = Vec::with_capacity(cases.len());
         for (k, (name, fingerprint)) in known.iter().enumerate() {
             let place = folder.join(name);
             let is_usable =
                 !(settings.fresh && settings.takes(k)) && experiment.has_all(&place, settings);
             found.push(if is_usable {
-                finished(&place, fingerprint, E::RESULTS)
+                finished(&place, fingerprint, version)
             } else {
                 Earlier::None
             });
@@ -61,11 +65,14 @@ impl<E: Experiment> Plan<E> {
         let is_side_by_side =
             !experiment.uses_all_threads() || (largest <= BIG_CASE && costs.len() > 1);
         // with all threads in a case, its own seconds are not those of all threads
-        let speed = Speed::of(E::SYSTEM, if is_side_by_side { &taken } else { &[] });
+        let finished: &[_] = if is_side_by_side { &taken } else { &[] };
+        let speed = Speed::of(battery.probe(), finished);
         let estimate = estimate(&costs, speed, threads(settings.jobs), is_side_by_side);
+        let (names, fingerprints) = known.into_iter().unzip();
         Ok(Self {
             cases,
-            names: known.into_iter().map(|(name, _)| name).collect(),
+            names,
+            fingerprints,
             found,
             is_side_by_side,
             estimate,

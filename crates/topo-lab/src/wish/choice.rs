@@ -14,6 +14,8 @@ pub struct Grant {
     pub wish: Wish,
     /// The setting and what was measured of it.
     pub point: Point,
+    /// What its resolution counts, such as `edges`.
+    pub unit: &'static str,
     /// Factor of the estimates.
     pub scale: f64,
     /// Why the table does not speak of the present code, if it does not.
@@ -55,6 +57,7 @@ pub(crate) fn grant(table: Measured, wish: Wish, load: Load) -> Result<Grant, St
     let scale = factor.map_or(UNKNOWN_SCALE, |f| f.scale);
     let granted = choose(&table.points(), scale, wish, load)?;
     Ok(Grant {
+        unit: table.unit(),
         stale: table.stale(),
         ..granted
     })
@@ -70,6 +73,7 @@ pub(super) fn choose(
     let granted = |p: &Point| Grant {
         wish,
         point: *p,
+        unit: "",
         scale,
         stale: None,
         cpu_seconds: seconds(p),

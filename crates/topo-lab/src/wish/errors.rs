@@ -98,6 +98,7 @@ mod tests {
                 check_tolerance: 2e-3,
                 n_cases: 8,
             },
+            unit: "edges",
             scale: 2.0,
             stale: None,
             cpu_seconds: 1.0,

@@ -71,6 +71,14 @@ impl Measured {
         }
     }
 
+    /// What the resolution of its settings counts.
+    pub(super) fn unit(self) -> &'static str {
+        match self {
+            Self::Rod => "edges",
+            Self::Nematic => "ξ_N a cell",
+        }
+    }
+
     fn table(self) -> &'static str {
         match self {
             Self::Rod => include_str!("../../data/tradeoff-rod.csv"),

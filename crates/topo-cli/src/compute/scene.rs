@@ -1,0 +1,56 @@
+//! A user's own scene, whatever its battery: settings, estimate, run, table, errors.
+
+use std::path::Path;
+
+use super::report::{Failures, Reporter, tell_taken};
+use super::{by_wish, estimate};
+use crate::batteries::Batteries;
+use crate::error::CliError;
+use topo_lab::{Options, Sweep, SweepSettings, Swept, read_scene};
+
+/// Runs a user's scene and prints its table; `options` stand above what the file says.
+pub fn scene(
+    batteries: &Batteries<'_>,
+    file: &Path,
+    options: &Options<'_>,
+    settings: &SweepSettings,
+) -> Result<(), CliError> {
+    let mut scene = read_scene(batteries, file)?;
+    scene.change(options)?;
+    let mut experiment = scene.experiment()?;
+    let grant = experiment.grant(settings.jobs)?;
+    if let Some(grant) = &grant {
+        by_wish::tell_grant(grant);
+    }
+    estimate::tell(&experiment.stages(settings)?);
+    let folder = experiment.results(&settings.out);
+    let swept = sweep(&*experiment, settings)?;
+    let mut failures = Failures::default();
+    failures.add(swept.failed(), &folder);
+    for line in swept.lines() {
+        say!("{line}");
+    }
+    tell_taken(swept.estimate(), swept.wall_seconds());
+    if let Some(grant) = &grant {
+        let reporter = Reporter::new(experiment.label());
+        let checked = swept.check(grant, settings, &|event| reporter.report(event))?;
+        reporter.finish(checked.as_ref().is_some_and(|c| c.is_interrupted))?;
+        if let Some(checked) = checked {
+            by_wish::tell_errors(grant, &checked.errors, &folder)?;
+            failures.add(&checked.failed, &checked.folder);
+        }
+    }
+    say!("written to {}", folder.display());
+    failures.into_result()
+}
+
+/// Runs a sweep with progress.
+pub fn sweep<'a>(
+    experiment: &'a dyn Sweep,
+    settings: &SweepSettings,
+) -> Result<Box<dyn Swept + 'a>, CliError> {
+    let reporter = Reporter::new(experiment.label());
+    let swept = experiment.sweep(settings, &|event| reporter.report(event))?;
+    reporter.finish(swept.is_interrupted())?;
+    Ok(swept)
+}
