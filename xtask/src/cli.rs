@@ -2,8 +2,8 @@
 
 use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand};
 use std::path::PathBuf;
-use topo_cli::SystemsArgs;
-use topo_view::Quality;
+use topo_cli::{OF_FIGURES, SystemsArgs, quality};
+use topo_lab::Preset;
 
 /// How this program is called.
 pub const NAME: &str = "cargo xtask";
@@ -126,8 +126,8 @@ pub struct DeterminismArgs {
     /// A scene, instead of all that figures draw.
     pub scene: Option<PathBuf>,
     /// How much to compute.
-    #[arg(long, value_enum, default_value_t = Quality::Draft)]
-    pub quality: Quality,
+    #[arg(long, value_parser = quality(OF_FIGURES), default_value = Preset::Draft.name())]
+    pub quality: Preset,
     /// How often one of the runs is killed.
     #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u32).range(0..=1000))]
     pub kills: u32,

@@ -2,13 +2,16 @@
 
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
+use topo_lab::Preset;
 use topo_lab::Shard;
-use topo_view::Quality;
 
 mod count;
 mod knot;
+mod quality;
 
-pub use knot::{IdentifyArgs, KnotArgs, KnotCommand, KnotQuality, TightenArgs};
+pub use knot::{IdentifyArgs, KnotArgs, KnotCommand, TightenArgs};
+use quality::OF_STUDIES;
+pub use quality::{OF_FIGURES, quality};
 
 /// Topological batteries: knotted elastic fibres and nematic colloids, charged, discharged and drawn.
 #[derive(Debug, Parser)]
@@ -108,8 +111,8 @@ pub struct FiguresArgs {
     #[arg(long, value_name = "NAME")]
     pub only: Vec<String>,
     /// How much to compute.
-    #[arg(long, value_enum, default_value_t = Quality::Draft)]
-    pub quality: Quality,
+    #[arg(long, value_parser = quality(OF_FIGURES), default_value = Preset::Draft.name())]
+    pub quality: Preset,
     /// Compute part I of N only and draw nothing; each part may run anywhere.
     #[arg(long, value_name = "I/N")]
     pub shard: Option<Shard>,
@@ -131,8 +134,8 @@ pub struct FiguresArgs {
 #[derive(Debug, Args)]
 pub struct AccuracyArgs {
     /// Which preset is measured.
-    #[arg(long, value_enum, default_value_t = Quality::Draft)]
-    pub quality: Quality,
+    #[arg(long, value_parser = quality(OF_FIGURES), default_value = Preset::Draft.name())]
+    pub quality: Preset,
     /// Where and how it is computed.
     #[command(flatten)]
     pub work: WorkArgs,
@@ -224,9 +227,9 @@ pub struct SystemsArgs {
     /// Only this system (rod, nematic, knots); may be given several times.
     #[arg(long, value_name = "SYSTEM", value_parser = ["rod", "nematic", "knots"])]
     pub only: Vec<String>,
-    /// How much is run: draft or standard.
-    #[arg(long, value_enum, default_value_t = Quality::Draft, hide_possible_values = true)]
-    pub quality: Quality,
+    /// How much is run.
+    #[arg(long, value_parser = quality(OF_STUDIES), default_value = Preset::Draft.name())]
+    pub quality: Preset,
     /// Where and how it is computed.
     #[command(flatten)]
     pub work: WorkArgs,
@@ -253,9 +256,9 @@ pub struct BucklingArgs {
 /// Options of `cost`.
 #[derive(Debug, Args)]
 pub struct CostArgs {
-    /// How large the runs are: draft or standard.
-    #[arg(long, value_enum, default_value_t = Quality::Draft, hide_possible_values = true)]
-    pub quality: Quality,
+    /// How large the runs are.
+    #[arg(long, value_parser = quality(OF_STUDIES), default_value = Preset::Draft.name())]
+    pub quality: Preset,
     /// Folder of the results.
     #[arg(long, value_name = "DIR", default_value = "results")]
     pub out: PathBuf,
@@ -294,7 +297,7 @@ mod tests {
         };
         assert_eq!(
             (f.only.len(), f.quality, f.work.jobs),
-            (1, Quality::Paper, Some(1))
+            (1, Preset::Paper, Some(1))
         );
         assert!(Cli::try_parse_from(["topo", "figures", "--quality", "best"]).is_err());
     }

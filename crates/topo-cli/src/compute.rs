@@ -29,7 +29,7 @@ pub fn tables(
     stop: &Interrupt,
     provenance: &mut Provenance,
 ) -> Result<Failures, CliError> {
-    let scene = ElasticScene::published(order.quality.preset());
+    let scene = ElasticScene::published(order.quality);
     let table = order.table;
     let mut failures = Failures::default();
     provenance.presets.insert(
@@ -101,7 +101,7 @@ pub fn tables(
     }
     if order.nematic {
         let start = Instant::now();
-        let scene = NematicScene::published(order.quality.preset());
+        let scene = NematicScene::published(order.quality);
         let report = nematic::sweep(&scene, &settings)?;
         failures.add(&report.failed, &scene.results(order.results));
         provenance.estimated("nematic sweep", &report.estimate, report.wall_seconds);

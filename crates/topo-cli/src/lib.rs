@@ -18,7 +18,8 @@ mod interrupt;
 mod progress;
 
 pub use cli::{
-    Any, BucklingArgs, Cli, Command, CompareArgs, CostArgs, Measure, SystemsArgs, WorkArgs,
+    Any, BucklingArgs, Cli, Command, CompareArgs, CostArgs, Measure, OF_FIGURES, SystemsArgs,
+    WorkArgs, quality,
 };
 pub use error::CliError;
 pub use interrupt::{check, install};

@@ -5,8 +5,9 @@
 
 use topo_core::{
     DischargeCurve, Ledger, LinearlyImplicit, Model, Polyline, Rejection, Rkc2, RosenbrockW,
-    Sample, Schedule, Scheduled, Simulation, SparseCholesky, SpectralBound, StepControl, Stepper,
+    Sample, Schedule, Scheduled, Simulation, SpectralBound, StepControl, Stepper,
 };
+use topo_sparse::SparseCholesky;
 
 /// Beads on a line, neighbours joined by springs, each bead dragged by the bath: u' = -k K u.
 struct Chain {

@@ -2,7 +2,7 @@
 //!
 //! Reading order: `curve` (what is deformed), `integrate` (what a model offers and how it is advanced), `control` and
 //! `simulation` (the loop that ends for certain), `ledger` and `observe` (what is known of a run), `discharge` (what a battery
-//! yields), `sparse` (the one matrix), `file`, `checkpoint` and `snapshot` (what stays on disk), `check` (validators, and the
+//! yields), `file`, `checkpoint` and `snapshot` (what stays on disk), `check` (validators, and the
 //! finite differences that every energy is tested with).
 //!
 //! Everything here is free of units, but for `units`: a rod's radius, bending modulus and viscosity are 1, and SI values enter and
@@ -22,7 +22,6 @@ mod minimum;
 mod observe;
 mod simulation;
 mod snapshot;
-mod sparse;
 mod units;
 
 pub use check::{
@@ -36,7 +35,7 @@ pub use curve::{
     vertex_radius, windowed_half_distance, writhe,
 };
 pub use discharge::{DischargeCurve, DischargeError};
-pub use error::{CurveError, SparseError};
+pub use error::CurveError;
 pub use file::{FileError, write_atomic, write_atomic_bytes};
 pub use integrate::{
     Counters, Fire, ForceFn, GAMMA_L_STABLE_LARGE, GAMMA_L_STABLE_SMALL, LinearlyImplicit, Model,
@@ -48,7 +47,6 @@ pub use minimum::MinimumState;
 pub use observe::{Observer, Sample, Schedule, Scheduled};
 pub use simulation::{Interrupt, Simulation, StopCondition, StopReason};
 pub use snapshot::Snapshot;
-pub use sparse::SparseCholesky;
 pub use units::{
     RodMaterial, RodUnits, SILICONE, bending_time, energy_over_reference, reference_time,
     twist_time,

@@ -45,7 +45,7 @@ pub use progress::{Event, Shard, SweepSettings, with_jobs};
 pub use scene::{Axis, AxisValue, Numbers, Scene};
 pub use stability::{StabilityRow, n_extremes, stability};
 pub use sweep::{FailedCase, SweepReport};
-pub use system::{Effort, System};
+pub use system::System;
 pub use terms::{TermCost, term_costs};
 pub use tradeoff::{
     CaseSet, PeakBytes, REFERENCE, Setting, TradeoffEvent, TradeoffRow, TradeoffRun, TradeoffWork,

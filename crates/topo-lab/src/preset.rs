@@ -1,4 +1,4 @@
-//! How much an experiment computes.
+//! How much is computed: one dial for scenes, figures, tight shapes, maps and trade-offs.
 
 use serde::{Deserialize, Serialize};
 
@@ -26,5 +26,17 @@ impl Preset {
             Self::Paper => "paper",
             Self::Reference => "reference",
         }
+    }
+}
+
+/// As it stands on the face of figures and reports.
+impl std::fmt::Display for Preset {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Draft => "Draft",
+            Self::Standard => "Standard",
+            Self::Paper => "Paper",
+            Self::Reference => "Reference",
+        })
     }
 }

@@ -9,7 +9,8 @@ mod watch;
 use rayon::prelude::*;
 use topo_core::Interrupt;
 
-use crate::system::{Effort, System};
+use crate::preset::Preset;
+use crate::system::System;
 use cell::Cell;
 pub use cell::StabilityRow;
 
@@ -22,12 +23,12 @@ pub use cell::StabilityRow;
 /// `maps_are_as_large_as_promised`, `a_panic_is_an_outcome`
 pub fn stability(
     system: System,
-    effort: Effort,
+    preset: Preset,
     known: &[StabilityRow],
     interrupt: &Interrupt,
     told: &(dyn Fn(&StabilityRow) + Sync),
 ) -> Vec<StabilityRow> {
-    cells(system, effort)
+    cells(system, preset)
         .par_iter()
         .with_max_len(1)
         .filter_map(|cell| {
@@ -52,14 +53,14 @@ pub fn stability(
 
 /// Number of runs of all maps of a system.
 pub fn n_extremes(system: System) -> usize {
-    cells(system, Effort::Draft).len()
+    cells(system, Preset::Draft).len()
 }
 
-fn cells(system: System, effort: Effort) -> Vec<Cell> {
+fn cells(system: System, preset: Preset) -> Vec<Cell> {
     match system {
-        System::Rod => rod::cells(effort),
-        System::Nematic => nematic::cells(effort),
-        System::Knots => knots::cells(effort),
+        System::Rod => rod::cells(preset),
+        System::Nematic => nematic::cells(preset),
+        System::Knots => knots::cells(preset),
     }
 }
 

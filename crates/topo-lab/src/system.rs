@@ -1,4 +1,4 @@
-//! The systems that maps of the extremes and trade-offs are about, and how much of them is run.
+//! The systems that maps of the extremes and trade-offs are about.
 
 /// Which part of the product is driven to its extremes, or measured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -23,13 +23,4 @@ impl System {
             Self::Knots => "knots",
         }
     }
-}
-
-/// How much is run.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Effort {
-    /// Minutes for all: in maps part of the charge and most of the discharge, in trade-offs few cases.
-    Draft,
-    /// Every run to its end, more cases and finer references.
-    Standard,
 }

@@ -5,7 +5,7 @@
 use serde::{Deserialize, Serialize};
 use topo_core::Interrupt;
 
-use crate::{Effort, LabError, with_jobs};
+use crate::{LabError, Preset, with_jobs};
 use topo_analysis::median;
 
 mod nematic;
@@ -59,12 +59,12 @@ const N_RUNS: usize = 5;
 /// # Validation
 /// `law_absent_terms_of_a_rod_cost_nothing`, `law_absent_terms_of_a_nematic_cost_nothing`, `terms_are_measured_with_and_without`
 pub fn term_costs(
-    effort: Effort,
+    preset: Preset,
     interrupt: &Interrupt,
     told: &(dyn Fn(&TermCost) + Sync),
 ) -> Result<Vec<TermCost>, LabError> {
-    let mut terms = rod::terms(effort);
-    terms.extend(nematic::terms(effort));
+    let mut terms = rod::terms(preset);
+    terms.extend(nematic::terms(preset));
     let measure = || -> Result<Vec<TermCost>, LabError> {
         let mut rows = Vec::new();
         for term in &terms {
@@ -160,8 +160,8 @@ mod tests {
 
     #[test]
     fn every_term_of_the_two_systems_is_measured() {
-        let mut terms = rod::terms(Effort::Draft);
-        terms.extend(nematic::terms(Effort::Draft));
+        let mut terms = rod::terms(Preset::Draft);
+        terms.extend(nematic::terms(Preset::Draft));
         let names: Vec<&str> = terms.iter().map(|t| t.name).collect();
         let expected = [
             "contact",

@@ -10,7 +10,8 @@ mod trial;
 use rayon::prelude::*;
 
 use crate::LabError;
-use crate::system::{Effort, System};
+use crate::preset::Preset;
+use crate::system::System;
 pub use front::{Setting, settings_of};
 pub use sets::CaseSet;
 pub(crate) use sets::MEASURED;
@@ -25,14 +26,14 @@ pub use trial::{PeakBytes, REFERENCE, TradeoffEvent, TradeoffRow, TradeoffRun, T
 /// A case that cannot be set up; a run that stops early is no error, its numbers are missing.
 pub fn tradeoff(
     system: System,
-    effort: Effort,
+    preset: Preset,
     work: &TradeoffWork<'_>,
 ) -> Result<Vec<TradeoffRun>, LabError> {
-    let trials = match (system, effort) {
-        (System::Rod, Effort::Draft) => rod::trials(work)?,
-        (System::Nematic, Effort::Draft) => nematic::trials(),
-        (System::Knots, _) => knots::trials(effort)?,
-        (_, Effort::Standard) => return ladder(system, CaseSet::Table, work),
+    let trials = match (system, preset) {
+        (System::Rod, Preset::Draft) => rod::trials(work)?,
+        (System::Nematic, Preset::Draft) => nematic::trials(),
+        (System::Knots, _) => knots::trials(preset)?,
+        _ => return ladder(system, CaseSet::Table, work),
     };
     (work.told)(TradeoffEvent::Begin(trials.len()));
     run_all(&trials, work)

@@ -2,11 +2,12 @@
 
 use std::ops::Range;
 
-use fearless_simd::{Level, Select, Simd, SimdBase, SimdFloat, SimdMask, dispatch};
+use fearless_simd::{Level, Select, Simd, SimdBase, SimdFloat, SimdMask};
 
 use crate::NematicState;
 use crate::kernel::five;
 use crate::tensor::{NEWTON_STEPS, order_and_director};
+use crate::vector::dispatch;
 
 /// Orders and directors of a stretch of cells, to the bit those of [`order_and_director`]; the room is used again.
 pub(crate) struct Directors {

@@ -1,6 +1,6 @@
 //! Free energy by part.
 
-use fearless_simd::{Simd, dispatch};
+use fearless_simd::Simd;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -8,6 +8,7 @@ use crate::domain::SpecialCell;
 use crate::kernel::run::{Kernel, Place, Threads};
 use crate::real::Real;
 use crate::tensor::{Tensor5, contract};
+use crate::vector::dispatch;
 
 /// Free energy by part, in L xi_N; the bulk part counts from the uniform equilibrium.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]

@@ -8,10 +8,11 @@ pub(crate) use lanczos::{Accuracy, LowestMode};
 
 use std::ops::{Add, Mul, Sub};
 
-use fearless_simd::{Simd, SimdBase, dispatch, f64x8};
+use fearless_simd::{Simd, SimdBase, f64x8};
 
 use crate::kernel::run::{Combination, Kernel};
 use crate::tensor::{Tensor5, contract};
+use crate::vector::dispatch;
 
 /// The Hessian of the energy at a state: minus the derivative of the molecular field.
 ///
@@ -65,7 +66,7 @@ impl<'a> Hessian<'a> {
         let bulk = [m.a, m.b, m.c];
         let (q, p) = (kernel.components(self.q), kernel.components(p));
         let plane_size = self.plane_size();
-        let sums = kernel.by_planes(out, |k, mut out, _| {
+        let sums = kernel.by_planes(out, &|k, mut out, _| {
             let first = k * plane_size;
             let mut sum = 0.0;
             for run in kernel.domain.runs_of(k) {
@@ -103,7 +104,7 @@ impl<'a> Hessian<'a> {
         let factors = [on_p, on_out, on_old];
         let (p, out) = (kernel.components(p), kernel.components(out));
         let plane_size = self.plane_size();
-        let sums = kernel.by_planes(old, |k, mut old, _| {
+        let sums = kernel.by_planes(old, &|k, mut old, _| {
             let first = k * plane_size;
             let mut sum = 0.0;
             for run in kernel.domain.runs_of(k) {

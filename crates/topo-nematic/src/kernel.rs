@@ -46,56 +46,16 @@ impl<T: Real> Coefficients<T> {
 }
 
 /// A stretch of cells along x and its neighbours.
-pub(crate) struct Stretch<'a, T, S> {
-    /// Components of the whole field, of equal length.
+pub(crate) struct Stretch<'a, T> {
+    /// Components of the whole field, or of a copy of the stretch and its neighbours; of equal length.
     pub field: [&'a [T]; 5],
     /// First cell and number of cells.
     pub start: usize,
     pub length: usize,
-    /// Neighbours at -y, +y, -z, +z.
-    pub sides: S,
+    /// The first neighbour at -y, +y, -z, +z.
+    pub sides: [usize; 4],
     /// Neighbour of the first cell at -x and of the last at +x.
     pub ends: [[T; 5]; 2],
-}
-
-/// Where the neighbours at -y, +y, -z, +z of a stretch are found.
-pub(crate) trait Sides<L: Lanes> {
-    /// Component `c` at neighbour `side` of the cells from `at` on.
-    fn load(&self, token: L::Token, field: &[L::Scalar], side: usize, c: usize, at: usize) -> L;
-    /// Calls for what [`load`](Self::load) will want of a component soon.
-    fn prefetch(&self, field: &[L::Scalar], at: usize);
-}
-
-/// All in the field: the first neighbour at each side.
-pub(crate) struct InField(pub [usize; 4]);
-
-/// Some beyond a wall: copies of all of them.
-pub(crate) struct Copies<'a, T>(pub [[&'a [T]; 5]; 4]);
-
-impl<L: Lanes> Sides<L> for InField {
-    #[inline(always)]
-    fn load(&self, token: L::Token, field: &[L::Scalar], side: usize, _c: usize, at: usize) -> L {
-        let from = self.0[side] + at;
-        L::load(token, &field[from..from + L::N])
-    }
-
-    #[inline(always)]
-    fn prefetch(&self, field: &[L::Scalar], at: usize) {
-        // Not the row at -y: it was the row itself a moment ago.
-        for row in &self.0[1..] {
-            prefetch::<_, 512>(field, row + at);
-        }
-    }
-}
-
-impl<L: Lanes> Sides<L> for Copies<'_, L::Scalar> {
-    #[inline(always)]
-    fn load(&self, token: L::Token, _field: &[L::Scalar], side: usize, c: usize, at: usize) -> L {
-        L::load(token, &self.0[side][c][at..at + L::N])
-    }
-
-    #[inline(always)]
-    fn prefetch(&self, _field: &[L::Scalar], _at: usize) {}
 }
 
 /// What is done with the molecular field of a few cells.
@@ -124,9 +84,9 @@ pub(crate) fn five<L>(f: impl Fn(usize) -> L) -> [L; 5] {
 
 /// Passes over a stretch of at least N cells; a last incomplete vector overlaps the one before.
 #[inline(always)]
-pub(crate) fn pass<L: Lanes, S: Sides<L>, U: Update<L>>(
+pub(crate) fn pass<L: Lanes, U: Update<L>>(
     token: L::Token,
-    stretch: &Stretch<'_, L::Scalar, S>,
+    stretch: &Stretch<'_, L::Scalar>,
     k: &Coefficients<L::Scalar>,
     update: &mut U,
 ) {
@@ -166,7 +126,10 @@ pub(crate) fn pass<L: Lanes, S: Sides<L>, U: Update<L>>(
             |c| L::load(token, &centre[c][start + at..start + at + L::N]),
         );
         for component in centre {
-            stretch.sides.prefetch(component, at);
+            // Not the row at -y: it was the row itself a moment ago.
+            for row in &stretch.sides[1..] {
+                prefetch::<_, 512>(component, row + at);
+            }
         }
         let [xx, xy, xz, yy, yz] = q;
         let squares = [xx * xx, xy * xy, xz * xz, yy * yy, yz * yz];
@@ -198,10 +161,10 @@ pub(crate) fn pass<L: Lanes, S: Sides<L>, U: Update<L>>(
                 } else {
                     L::load(token, &centre[c][start + at + 1..start + at + 1 + L::N])
                 };
-                let below = stretch.sides.load(token, centre[c], 0, c, at);
-                let above = stretch.sides.load(token, centre[c], 1, c, at);
-                let back = stretch.sides.load(token, centre[c], 2, c, at);
-                let front = stretch.sides.load(token, centre[c], 3, c, at);
+                let below = load_at::<L>(token, centre[c], stretch.sides[0] + at);
+                let above = load_at::<L>(token, centre[c], stretch.sides[1] + at);
+                let back = load_at::<L>(token, centre[c], stretch.sides[2] + at);
+                let front = load_at::<L>(token, centre[c], stretch.sides[3] + at);
                 let sum = (left + right) + (below + above) + (back + front);
                 let bulk = linear.mul_add(q[c], quadratic.mul_add(square[c], field[c]));
                 link.mul_add(sum, bulk)
@@ -215,6 +178,11 @@ pub(crate) fn pass<L: Lanes, S: Sides<L>, U: Update<L>>(
         }
         at = (at + L::N).min(last);
     }
+}
+
+#[inline(always)]
+fn load_at<L: Lanes>(token: L::Token, field: &[L::Scalar], at: usize) -> L {
+    L::load(token, &field[at..at + L::N])
 }
 
 /// `first` followed by the first N - 1 of `rest`.

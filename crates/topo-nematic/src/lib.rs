@@ -10,7 +10,6 @@ mod directors;
 mod domain;
 mod energy;
 mod error;
-mod fft;
 mod flow;
 mod grid;
 mod hessian;
@@ -29,6 +28,7 @@ mod state;
 mod stokes;
 mod surface;
 mod tensor;
+mod vector;
 
 pub use anchoring::{Anchoring, DirectorTable, Plate, PlateDirector, SurfacePattern};
 pub use battery::NematicBattery;

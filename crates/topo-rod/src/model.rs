@@ -9,7 +9,8 @@ pub use account::WorkAccount;
 use std::cell::Cell;
 
 use nalgebra::Vector3;
-use topo_core::{Ledger, Model, Rejection, SparseError};
+use topo_core::{Ledger, Model, Rejection};
+use topo_sparse::SparseError;
 
 use crate::contact::ContactPairs;
 use crate::energy::{At, Bend, ContactEnergy, EnergyTerm, Force, Stiffness, Stretch, Twist};

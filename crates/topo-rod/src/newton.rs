@@ -1,7 +1,7 @@
 //! The matrix of the linearly implicit steps, η K + η_f C + s H, on the centreline.
 
 use nalgebra::{Matrix3, Vector3};
-use topo_core::{SparseCholesky, SparseError};
+use topo_sparse::{SparseCholesky, SparseError};
 
 use crate::contact::{ContactPairs, KnownPairs};
 use crate::energy::Stiffness;

@@ -3,7 +3,7 @@
 //! The damping is internal, so a translation costs nothing: one vertex is grounded, which for a balanced force is the exact
 //! solution with that vertex at rest, and the mean velocity is then removed.
 
-use topo_core::{SparseCholesky, SparseError};
+use topo_sparse::{SparseCholesky, SparseError};
 
 use crate::contact::{ContactPairs, KnownPairs};
 use crate::friction::Friction;

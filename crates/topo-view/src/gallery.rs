@@ -7,11 +7,11 @@ use crate::movies::Movie;
 use crate::plot::font;
 use crate::plot::text::escape;
 use crate::provenance::Provenance;
-use crate::quality::Quality;
 use crate::reproduction::{self, Finding};
 use crate::viewer;
 use std::fmt::Write;
 use std::path::Path;
+use topo_lab::Preset;
 
 /// Looks of pages.
 pub(crate) const STYLE: &str = "
@@ -45,7 +45,7 @@ pub struct Page<'a> {
     /// Claims with what was found.
     pub claims: &'a [Finding],
     /// How much was computed.
-    pub quality: Quality,
+    pub quality: Preset,
     /// Where it comes from.
     pub provenance: &'a Provenance,
 }

@@ -3,12 +3,12 @@
 use crate::data;
 use crate::error::ViewError;
 use crate::figures::Done;
-use crate::quality::Quality;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::Command;
 use topo_lab::Estimate;
+use topo_lab::Preset;
 
 /// Where figures come from.
 #[derive(Debug, Serialize)]
@@ -20,7 +20,7 @@ pub struct Provenance {
     /// BLAKE3 hash of `Cargo.lock`.
     pub lock_blake3: String,
     /// Quality preset.
-    pub quality: Quality,
+    pub quality: Preset,
     /// Presets and seeds of the runs, by name.
     pub presets: BTreeMap<String, String>,
     /// Wall seconds by stage.
@@ -44,7 +44,7 @@ pub struct Expected {
 
 impl Provenance {
     /// Collects what is known of the code; `root` is the workspace's folder, if the program runs from one.
-    pub fn collect(root: Option<&Path>, quality: Quality) -> Self {
+    pub fn collect(root: Option<&Path>, quality: Preset) -> Self {
         let unknown = || "unknown".to_owned();
         let lock = root.and_then(|root| std::fs::read(root.join("Cargo.lock")).ok());
         Self {

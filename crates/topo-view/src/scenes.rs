@@ -3,12 +3,12 @@
 use crate::data;
 use crate::error::ViewError;
 use crate::program::program;
-use crate::quality::Quality;
 use std::path::Path;
 use topo_lab::NematicScene;
+use topo_lab::Preset;
 
 /// Writes `scenes/elastic.toml` and `scenes/nematic.toml` into the results folder.
-pub fn write(results: &Path, quality: Quality) -> Result<(), ViewError> {
+pub fn write(results: &Path, quality: Preset) -> Result<(), ViewError> {
     for (name, text) in [("elastic", elastic(quality)), ("nematic", nematic(quality))] {
         let path = results.join(format!("scenes/{name}.toml"));
         data::write(&path, text.as_bytes())?;
@@ -16,8 +16,8 @@ pub fn write(results: &Path, quality: Quality) -> Result<(), ViewError> {
     Ok(())
 }
 
-fn elastic(quality: Quality) -> String {
-    let (name, program) = (quality.preset().name(), program());
+fn elastic(quality: Preset) -> String {
+    let (name, program) = (quality.name(), program());
     format!(
         "# The sweep of the elastic figures. Run it: {program} run scenes/elastic.toml --out again\n\
          [rod]\nknot = \"all\"\nslenderness = 50\ntwist = {{ from = -2.0, to = 2.0, n = 17 }}\n\
@@ -25,9 +25,9 @@ fn elastic(quality: Quality) -> String {
     )
 }
 
-fn nematic(quality: Quality) -> String {
+fn nematic(quality: Preset) -> String {
     let program = program();
-    let scene = NematicScene::published(quality.preset());
+    let scene = NematicScene::published(quality);
     let flowing = scene.flowing.map_or(String::new(), |q| {
         let numbers: Vec<String> = q.iter().map(u32::to_string).collect();
         format!("q = [{}]\n", numbers.join(", "))
@@ -50,16 +50,16 @@ mod tests {
 
     #[test]
     fn the_scenes_are_those_of_the_figures() {
-        for quality in [Quality::Draft, Quality::Standard, Quality::Paper] {
+        for quality in [Preset::Draft, Preset::Standard, Preset::Paper] {
             let path = Path::new("elastic.toml");
             let scene = Scene::parse(&elastic(quality), path).unwrap();
-            let mut published = ElasticScene::published(quality.preset());
+            let mut published = ElasticScene::published(quality);
             // each case has a twist of its own
             published.rod.twist = None;
             assert_eq!(scene, Scene::Elastic(Box::new(published)));
             let path = Path::new("nematic.toml");
             let scene = Scene::parse(&nematic(quality), path).unwrap();
-            let published = NematicScene::published(quality.preset());
+            let published = NematicScene::published(quality);
             assert_eq!(scene, Scene::Nematic(Box::new(published)));
         }
     }

@@ -7,7 +7,7 @@ use crate::plot::canvas::{Canvas, Picture};
 use crate::plot::color::{BLUE, INK, VERMILION};
 use crate::plot::style::Style;
 use crate::program::program;
-use crate::quality::Quality;
+use topo_lab::Preset;
 use topo_lab::StabilityRow;
 
 /// Runs of one pair of axes.
@@ -181,7 +181,7 @@ fn frame(canvas: &mut Canvas, at: [f64; 2], size: [f64; 2]) {
 }
 
 /// The report: what was run, where the edges are, and why runs stopped there.
-pub fn report(quality: Quality, maps: &[(&str, Vec<StabilityRow>)]) -> String {
+pub fn report(quality: Preset, maps: &[(&str, Vec<StabilityRow>)]) -> String {
     let mut text = format!(
         "# Stability at the extremes\n\nMade by `{} stability`; the tables are \
          `stability/{{rod,nematic,knots}}.csv`. Every run converges or stops with a named reason \
@@ -281,7 +281,7 @@ mod tests {
             row("1", "2", "", 2, false),
         ];
         assert_eq!(n_broken(&rows), 2);
-        let report = report(Quality::Draft, &[("rod", rows.clone())]);
+        let report = report(Preset::Draft, &[("rod", rows.clone())]);
         assert!(report.contains("step too small (2)"), "{report}");
         assert!(report.contains("1 of 2"), "{report}");
         let picture = draw(&rows).unwrap();

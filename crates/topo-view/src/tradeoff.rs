@@ -8,9 +8,9 @@ use crate::plot::color::{BLUE, GREEN, INK, PURPLE, QUIET, VERMILION};
 use crate::plot::panel::{Axis, Panel};
 use crate::plot::style::Style;
 use crate::program::program;
-use crate::quality::Quality;
 use kuva::prelude::{LinePlot, Plot, ScatterPlot};
 use topo_analysis::quantile;
+use topo_lab::Preset;
 use topo_lab::{CheckRow, REFERENCE, Setting, System, TradeoffRow, points, settings_of};
 
 /// Errors that the short table asks for.
@@ -139,7 +139,7 @@ fn label(quantity: &str) -> &str {
 }
 
 /// The report: what accuracy costs, and every setting with its errors.
-pub fn report(quality: Quality, tables: &[(System, Vec<TradeoffRow>)]) -> String {
+pub fn report(quality: Preset, tables: &[(System, Vec<TradeoffRow>)]) -> String {
     let mut text = format!(
         "# What accuracy costs\n\nMade by `{} tradeoff` at {quality}; the tables are \
          `tradeoff/{{rod,nematic,knots}}.csv`. Errors are relative to converged references: the \
@@ -156,7 +156,7 @@ pub fn report(quality: Quality, tables: &[(System, Vec<TradeoffRow>)]) -> String
 }
 
 /// The part of the report on one system.
-pub fn section(quality: Quality, system: System, rows: &[TradeoffRow]) -> String {
+pub fn section(quality: Preset, system: System, rows: &[TradeoffRow]) -> String {
     let mut text = String::new();
     let mut put = |line: String| {
         // Writing to a string cannot fail.
@@ -239,7 +239,7 @@ pub fn section(quality: Quality, system: System, rows: &[TradeoffRow]) -> String
     }
     put(String::new());
     let points = points(system, rows);
-    if quality == Quality::Standard && !points.is_empty() {
+    if quality == Preset::Standard && !points.is_empty() {
         put("What scenes by wish choose from: errors of the last time listed; costs of both runs.\n".to_owned());
         put("| setting | coarser run | cases | median | 90 % | CPU s a case | MB |".to_owned());
         put("|---|---|---|---|---|---|---|".to_owned());
@@ -388,7 +388,7 @@ mod tests {
             row("middle", 1.015, 0.015, 0.5),
             row("fine", 1.001, 0.001, 3.0),
         ];
-        let text = report(Quality::Draft, &[(System::Rod, rows.clone())]);
+        let text = report(Preset::Draft, &[(System::Rod, rows.clone())]);
         for line in [
             "| t99 | 20 % | resolution coarse | 8.0 % | 8.0 % | 0.10 | 3.0 |",
             "| t99 | 5.0 % | resolution middle | 1.5 %",

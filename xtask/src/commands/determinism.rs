@@ -157,7 +157,7 @@ mod tests {
     fn the_whole_is_computed_and_nothing_drawn() {
         let mut args = DeterminismArgs {
             scene: None,
-            quality: topo_view::Quality::Draft,
+            quality: topo_lab::Preset::Draft,
             kills: 3,
             seed: 1,
             out: PathBuf::from("results"),

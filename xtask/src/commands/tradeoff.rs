@@ -5,7 +5,7 @@ mod sets;
 use crate::cli::TradeoffArgs;
 use topo_cli::CliError;
 use topo_cli::commands::tradeoff;
-use topo_view::Quality;
+use topo_lab::Preset;
 
 pub fn run(args: &TradeoffArgs) -> Result<(), CliError> {
     if let Some(name) = args.set.as_deref() {
@@ -13,7 +13,7 @@ pub fn run(args: &TradeoffArgs) -> Result<(), CliError> {
         return sets::measure_set(args, name, &folder);
     }
     let quality = args.systems.quality;
-    if args.record && quality == Quality::Draft {
+    if args.record && quality == Preset::Draft {
         return Err(CliError::Argument {
             key: "--record",
             value: quality.to_string(),

@@ -1,9 +1,11 @@
 //! The command line of `topo knot`.
 
 use super::count;
-use clap::{Args, Subcommand, ValueEnum};
+use super::quality::{OF_SHAPES, quality};
+use clap::{Args, Subcommand};
 use std::path::PathBuf;
 use topo_knots::{CurveFormat, FrameChoice, KnotError};
+use topo_lab::Preset;
 
 /// Options of `knot`.
 #[derive(Debug, Args)]
@@ -21,8 +23,8 @@ pub struct KnotArgs {
 pub enum KnotCommand {
     /// Find the tight shape of a knot and certify it.
     #[command(after_help = "Examples:
-  topo knot tighten 6_3 --quality fine
-  topo knot tighten all --quality fine       the whole table
+  topo knot tighten 6_3 --quality paper
+  topo knot tighten all --quality paper       the whole table
   topo knot tighten --braid \"1 -2 1 -2\"
   topo knot tighten --curve my-knot.vect --format xyz")]
     Tighten(TightenArgs),
@@ -72,8 +74,8 @@ pub struct TightenArgs {
     #[arg(long, value_name = "FILE")]
     pub curve: Option<PathBuf>,
     /// How fine.
-    #[arg(long, value_enum, default_value_t = KnotQuality::Standard)]
-    pub quality: KnotQuality,
+    #[arg(long, value_parser = quality(OF_SHAPES), default_value = Preset::Standard.name())]
+    pub quality: Preset,
     /// Start also from this number of inversions in spheres around random points: for knots that end in a poor minimum.
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = count::from(0, MOST_STARTS))]
     pub inversions: usize,
@@ -140,17 +142,6 @@ fn frame(text: &str) -> Result<FrameChoice, String> {
 
 fn format(text: &str) -> Result<CurveFormat, String> {
     text.parse().map_err(|e: KnotError| e.to_string())
-}
-
-/// How fine a knot is tightened.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum KnotQuality {
-    /// 4 vertices per unit of ropelength: within half a percent.
-    Draft,
-    /// 8 vertices per unit: within a tenth of a percent.
-    Standard,
-    /// 16 vertices per unit and a longer search: within two hundredths of a percent.
-    Fine,
 }
 
 #[cfg(test)]

@@ -14,7 +14,7 @@ use topo_lab::{
 
 /// Runs it.
 pub(super) fn run(args: &AccuracyArgs) -> Result<(), CliError> {
-    accuracy(args.quality.preset(), &settings(&args.work)?)
+    accuracy(args.quality, &settings(&args.work)?)
 }
 
 /// Compares the discharge times of a preset with much finer runs of the same cuts, prints and writes the table.

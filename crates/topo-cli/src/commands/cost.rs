@@ -1,6 +1,5 @@
 //! `topo cost`: what each term of a scene costs in time and bytes, measured with it and without it.
 
-use super::settings::effort;
 use crate::cli::CostArgs;
 use crate::error::CliError;
 use crate::interrupt;
@@ -13,7 +12,6 @@ use topo_view::data;
 /// # Errors
 /// A run that is refused, a folder that cannot be written, or a stop.
 pub fn run(args: &CostArgs) -> Result<String, CliError> {
-    let effort = effort(args.quality)?;
     let stop = interrupt::install();
     let told = |row: &TermCost| {
         note!(
@@ -24,7 +22,7 @@ pub fn run(args: &CostArgs) -> Result<String, CliError> {
             row.cpu_seconds
         );
     };
-    let rows = term_costs(effort, &stop, &told)?;
+    let rows = term_costs(args.quality, &stop, &told)?;
     let folder = args.out.join("cost");
     std::fs::create_dir_all(&folder).map_err(|source| CliError::File {
         path: folder.clone(),

@@ -3,8 +3,7 @@
 use crate::cli::WorkArgs;
 use crate::error::CliError;
 use crate::interrupt;
-use topo_lab::{Effort, SweepSettings};
-use topo_view::Quality;
+use topo_lab::SweepSettings;
 
 /// What the options of a computation ask for.
 pub fn settings(work: &WorkArgs) -> Result<SweepSettings, CliError> {
@@ -14,19 +13,6 @@ pub fn settings(work: &WorkArgs) -> Result<SweepSettings, CliError> {
         interrupt: interrupt::install(),
         ..SweepSettings::new(&work.out)
     })
-}
-
-/// How much a command runs that knows no paper quality.
-pub fn effort(quality: Quality) -> Result<Effort, CliError> {
-    match quality {
-        Quality::Draft => Ok(Effort::Draft),
-        Quality::Standard => Ok(Effort::Standard),
-        Quality::Paper => Err(CliError::Argument {
-            key: "--quality",
-            value: "paper".to_owned(),
-            remedy: "this is made at draft or standard".to_owned(),
-        }),
-    }
 }
 
 /// Gives rayon `jobs` threads, or all processors, and returns the number (0 for all).

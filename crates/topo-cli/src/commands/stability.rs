@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use super::settings::{effort, threads};
+use super::settings::threads;
 use crate::cli::SystemsArgs;
 use crate::error::CliError;
 use crate::interrupt;
@@ -15,7 +15,6 @@ use topo_view::{data, stability};
 const VERSION: u32 = 3;
 
 pub fn run(args: &SystemsArgs) -> Result<(), CliError> {
-    let effort = effort(args.quality)?;
     let jobs = threads(args.work.jobs)?;
     let stop = interrupt::install();
     let folder = args.work.out.join("stability");
@@ -46,7 +45,7 @@ pub fn run(args: &SystemsArgs) -> Result<(), CliError> {
             ));
         };
         let rows = with_jobs(jobs, || {
-            topo_lab::stability(system, effort, &known, &stop, &told)
+            topo_lab::stability(system, args.quality, &known, &stop, &told)
         })?;
         write_table(&kept, &rows)?;
         if rows.len() < n_runs {

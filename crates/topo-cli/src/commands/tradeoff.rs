@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, OnceLock};
 use std::time::{Duration, Instant};
 
-use super::settings::{effort, threads};
+use super::settings::threads;
 use crate::cli::SystemsArgs;
 use crate::error::CliError;
 use crate::interrupt;
@@ -47,7 +47,6 @@ pub type Hears<'a> = dyn FnMut(System, &[TradeoffRow]) -> Result<(), CliError> +
 /// A run that is refused, a folder that cannot be written, a stop, or what `measured` says.
 pub fn run(args: &SystemsArgs, measured: &mut Hears<'_>) -> Result<(), CliError> {
     let folder = &prepare(args)?;
-    let effort = effort(args.quality)?;
     let stop = interrupt::install();
     let mut tables = Vec::new();
     for system in System::ALL {
@@ -57,7 +56,7 @@ pub fn run(args: &SystemsArgs, measured: &mut Hears<'_>) -> Result<(), CliError>
         let start = Instant::now();
         let kept = kept(folder, &format!("{}-{}", system.name(), args.quality));
         let runs = measure(system.name(), args, &kept, &stop, |work| {
-            tradeoff(system, effort, work)
+            tradeoff(system, args.quality, work)
         })?;
         write_table(&kept, &runs)?;
         interrupt::check(&stop)?;

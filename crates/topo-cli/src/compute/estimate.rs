@@ -5,10 +5,10 @@ use crate::duration::duration;
 use crate::error::CliError;
 use indicatif::DecimalBytes;
 use topo_knots::{KnotTable, TightenSettings};
+use topo_lab::Preset;
 use topo_lab::{
     ElasticScene, Estimate, NematicScene, SweepSettings, estimate_nematic_sweep, estimate_sweep,
 };
-use topo_view::Quality;
 
 /// Stages of a command with what each is expected to take, as they follow each other; those with nothing to do are left out.
 pub type Stages = Vec<(&'static str, Estimate)>;
@@ -44,7 +44,7 @@ pub fn of_nematic(scene: &NematicScene, settings: &SweepSettings) -> Result<Stag
 pub fn of_order(order: &Order, settings: &SweepSettings) -> Result<Stages, CliError> {
     let mut stages = Stages::new();
     let table = order.table;
-    let scene = ElasticScene::published(order.quality.preset());
+    let scene = ElasticScene::published(order.quality);
     if (order.elastic || order.knots) && !order.as_is {
         let shapes = |names: &[String], tighten| {
             Estimate::of_shapes(names, table, tighten, order.results, order.jobs)
@@ -66,7 +66,7 @@ pub fn of_order(order: &Order, settings: &SweepSettings) -> Result<Stages, CliEr
         stages.push(("variants", variants));
     }
     if order.nematic {
-        let scene = NematicScene::published(order.quality.preset());
+        let scene = NematicScene::published(order.quality);
         stages.push(("nematic", estimate_nematic_sweep(&scene, settings)?));
     }
     if order.shard.is_none() {
@@ -114,11 +114,11 @@ fn drawing_seconds(name: &str) -> f64 {
 }
 
 /// What drawing a finer sweep costs over drawing the draft: more edges, more cells, more cuts.
-fn drawing_factor(quality: Quality) -> f64 {
+fn drawing_factor(quality: Preset) -> f64 {
     match quality {
-        Quality::Draft => 1.0,
-        Quality::Standard => 1.4,
-        Quality::Paper => 2.0,
+        Preset::Draft => 1.0,
+        Preset::Standard => 1.4,
+        Preset::Paper | Preset::Reference => 2.0,
     }
 }
 

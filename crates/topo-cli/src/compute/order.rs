@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use topo_knots::KnotTable;
+use topo_lab::Preset;
 use topo_lab::{ElasticScene, Shard};
-use topo_view::Quality;
 use topo_view::figures::Figure;
 use topo_view::movies::Movie;
 
@@ -16,7 +16,7 @@ pub struct Order<'a> {
     /// Folder of the results.
     pub results: &'a Path,
     /// How much to compute.
-    pub quality: Quality,
+    pub quality: Preset,
     /// Number of threads; 0 is one a processor.
     pub jobs: usize,
     /// Recompute finished runs.
@@ -48,9 +48,9 @@ pub fn knots_of(scene: &ElasticScene, table: &KnotTable) -> Result<Vec<String>, 
 
 /// Beyond draft the table of knots goes on to eight crossings, at the resolution of the standard preset, and always to the user's
 /// own knots.
-pub fn more_knots(quality: Quality, names: &[String], table: &KnotTable) -> Vec<String> {
+pub fn more_knots(quality: Preset, names: &[String], table: &KnotTable) -> Vec<String> {
     let builtin = KnotTable::builtin();
-    let n_crossings = if quality == Quality::Draft { 0 } else { 8 };
+    let n_crossings = if quality == Preset::Draft { 0 } else { 8 };
     let primes = table.primes_up_to(n_crossings);
     let own = table.iter().filter(|k| builtin.get(&k.name).is_err());
     let all = primes.chain(own).map(|k| k.name.clone());

@@ -3,8 +3,9 @@
 use std::collections::HashMap;
 use std::f64::consts::PI;
 
-use topo_core::{Polyline, SparseCholesky, closest_points, vertex_radius};
+use topo_core::{Polyline, closest_points, vertex_radius};
 use topo_rod::contact::close_pairs;
+use topo_sparse::SparseCholesky;
 
 use super::constraints::radius_gradient;
 use super::lbfgs::minimise;

@@ -1,6 +1,6 @@
 //! Convex quadratic programs with linear inequalities, by Mehrotra's predictor-corrector interior point method.
 
-use topo_core::SparseCholesky;
+use topo_sparse::SparseCholesky;
 
 use super::constraints::Row;
 

@@ -11,7 +11,7 @@ use topo_knots::{
 
 use super::cell::{Cell, Verdict};
 use super::rod::trefoil_at;
-use crate::system::Effort;
+use crate::preset::Preset;
 
 type V = Vector3<f64>;
 
@@ -20,21 +20,21 @@ const LONG: usize = 20;
 const LONG_STEPS: usize = 6;
 
 /// Settings of a quick tightening.
-fn quick(effort: Effort) -> TightenSettings {
+fn quick(preset: Preset) -> TightenSettings {
     let draft = TightenSettings {
         n_variants: 0,
         n_kicks_a_start: 0,
         n_kicks: 0,
         ..TightenSettings::draft()
     };
-    match effort {
-        Effort::Draft => TightenSettings {
+    match preset {
+        Preset::Draft => TightenSettings {
             per_unit: 2.0,
             search_vertices: 100,
             max_steps: 40,
             ..draft
         },
-        Effort::Standard => TightenSettings::draft(),
+        _ => TightenSettings::draft(),
     }
 }
 
@@ -92,12 +92,12 @@ fn named(curve: Result<Polyline, String>, expected: &str) -> Verdict {
 }
 
 /// All runs.
-pub(super) fn cells(effort: Effort) -> Vec<Cell> {
+pub(super) fn cells(preset: Preset) -> Vec<Cell> {
     let mut cells = Vec::new();
     for strands in [2, 3, 4, 5, 6] {
         // Words of twelve letters are diagrams of knots of up to twelve crossings.
         for least in [7, 9, 11, 13, 15, 60] {
-            let mut settings = quick(effort);
+            let mut settings = quick(preset);
             if least > LONG {
                 settings.max_steps = LONG_STEPS;
             }

@@ -11,7 +11,7 @@ use topo_nematic::{
 
 use super::cell::{Cell, Verdict};
 use super::watch::violations;
-use crate::system::Effort;
+use crate::preset::Preset;
 
 /// Energy that is rounding, in L xi_N: that of a small distortion is hundreds.
 const NOTHING: f64 = 1e-6;
@@ -72,12 +72,12 @@ fn middle() -> Case {
 }
 
 impl Case {
-    fn run(&self, effort: Effort, interrupt: &Interrupt) -> Verdict {
-        self.try_run(effort, interrupt)
+    fn run(&self, preset: Preset, interrupt: &Interrupt) -> Verdict {
+        self.try_run(preset, interrupt)
             .unwrap_or_else(|refused| Verdict::stopped(format!("refused: {refused}"), 0))
     }
 
-    fn try_run(&self, effort: Effort, interrupt: &Interrupt) -> Result<Verdict, NematicError> {
+    fn try_run(&self, preset: Preset, interrupt: &Interrupt) -> Result<Verdict, NematicError> {
         let parameters = NematicParameters {
             radius: self.radius,
             spacing: self.spacing,
@@ -87,9 +87,9 @@ impl Case {
             material: self.material,
             ..NematicParameters::default()
         };
-        let (max_steps, released) = match effort {
-            Effort::Draft => (4000, 0.99),
-            Effort::Standard => (100_000, 0.9995),
+        let (max_steps, released) = match preset {
+            Preset::Draft => (4000, 0.99),
+            _ => (100_000, 0.9995),
         };
         let accuracy = NematicAccuracy {
             tolerance: self.tolerance,
@@ -98,7 +98,7 @@ impl Case {
             ..NematicAccuracy::default()
         };
         let settings = ChargeSettings {
-            tolerance: if effort == Effort::Draft { 1e-6 } else { 1e-8 },
+            tolerance: if preset == Preset::Draft { 1e-6 } else { 1e-8 },
             max_steps,
             ..ChargeSettings::default()
         };
@@ -216,14 +216,14 @@ fn random(battery: &NematicBattery, seed: u64, order: f64) -> Result<NematicStat
 }
 
 /// All runs.
-pub(super) fn cells(effort: Effort) -> Vec<Cell> {
+pub(super) fn cells(preset: Preset) -> Vec<Cell> {
     let mut cells = Vec::new();
     let mut add = |axes: [&'static str; 2], at: [String; 2], case: Case| {
         cells.push(Cell {
             axes,
             at,
             is_inner: case.is_inner,
-            run: Box::new(move |interrupt| case.run(effort, interrupt)),
+            run: Box::new(move |interrupt| case.run(preset, interrupt)),
         });
     };
     let text = |x: f64, y: f64| [x.to_string(), y.to_string()];

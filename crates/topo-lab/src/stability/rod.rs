@@ -9,7 +9,7 @@ use topo_rod::{
 
 use super::cell::{Cell, Verdict};
 use super::watch::violations;
-use crate::system::Effort;
+use crate::preset::Preset;
 
 /// Drift of the linking number of a closed rod, in turns, that counts as a crossing.
 const CROSSING: f64 = 1e-8;
@@ -59,7 +59,7 @@ impl Case {
             && (1e-4..=1e-2).contains(&self.tolerance)
     }
 
-    fn run(&self, effort: Effort, interrupt: &Interrupt) -> Verdict {
+    fn run(&self, preset: Preset, interrupt: &Interrupt) -> Verdict {
         let parameters = RodParameters {
             slenderness: self.slenderness,
             n_edges: self.n_edges,
@@ -80,7 +80,7 @@ impl Case {
         };
         let mut charge = ChargeSettings::default();
         let mut discharge = DischargeSettings::default();
-        if effort == Effort::Draft {
+        if preset == Preset::Draft {
             accuracy.max_steps = DRAFT_STEPS;
             discharge.until_released = 0.99;
             if self.n_edges > LARGE {
@@ -122,7 +122,7 @@ impl Case {
 }
 
 /// All runs.
-pub(super) fn cells(effort: Effort) -> Vec<Cell> {
+pub(super) fn cells(preset: Preset) -> Vec<Cell> {
     let mut cells = Vec::new();
     let mut map = |axes: [&'static str; 2], xs: &[f64], ys: &[f64], set: fn(f64, f64) -> Case| {
         for &y in ys {
@@ -132,7 +132,7 @@ pub(super) fn cells(effort: Effort) -> Vec<Cell> {
                     axes,
                     at: [x.to_string(), y.to_string()],
                     is_inner: case.is_inner(),
-                    run: Box::new(move |interrupt| case.run(effort, interrupt)),
+                    run: Box::new(move |interrupt| case.run(preset, interrupt)),
                 });
             }
         }

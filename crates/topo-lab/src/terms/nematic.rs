@@ -8,7 +8,7 @@ use topo_nematic::{
 };
 
 use super::term::{Taken, Term};
-use crate::{Effort, LabError};
+use crate::{LabError, Preset};
 
 /// A colloid with all that can be left out.
 #[derive(Debug, Clone)]
@@ -18,8 +18,8 @@ struct Colloid {
     discharge: DischargeSettings,
 }
 
-pub(super) fn terms(effort: Effort) -> Vec<Term> {
-    let radius = if effort == Effort::Draft { 7.5 } else { 15.0 };
+pub(super) fn terms(preset: Preset) -> Vec<Term> {
+    let radius = if preset == Preset::Draft { 7.5 } else { 15.0 };
     let plain = Colloid {
         parameters: NematicParameters {
             radius,

@@ -10,13 +10,13 @@ use topo_rod::{
 
 use super::term::{Taken, Term};
 use crate::stability::rod::trefoil;
-use crate::{Effort, LabError};
+use crate::{LabError, Preset};
 
 /// Evaluations that a term which cannot be left out is timed over.
 const N_EVALUATIONS: u64 = 20_000;
 
-pub(super) fn terms(effort: Effort) -> Vec<Term> {
-    let n_edges = if effort == Effort::Draft { 100 } else { 200 };
+pub(super) fn terms(preset: Preset) -> Vec<Term> {
+    let n_edges = if preset == Preset::Draft { 100 } else { 200 };
     let bare = RodParameters {
         n_edges,
         twist: Some(1.0),

@@ -5,7 +5,7 @@ use topo_knots::{KnotTable, TightenSettings, second_opinion, tighten_entry};
 
 use super::trial::{Outcome, REFERENCE, Trial};
 use crate::LabError;
-use crate::system::Effort;
+use crate::preset::Preset;
 
 const QUANTITY: &str = "ropelength";
 
@@ -13,17 +13,17 @@ const QUANTITY: &str = "ropelength";
 const SECOND: [f64; 2] = [2.0, 4.0];
 
 /// All runs: the reference is the published ropelength, which costs nothing here.
-pub(super) fn trials(effort: Effort) -> Result<Vec<Trial>, LabError> {
+pub(super) fn trials(preset: Preset) -> Result<Vec<Trial>, LabError> {
     let table = KnotTable::builtin();
-    let names: Vec<String> = match effort {
-        Effort::Draft => ["3_1", "4_1", "5_2", "6_2", "7_4", "7_7"]
+    let names: Vec<String> = match preset {
+        Preset::Draft => ["3_1", "4_1", "5_2", "6_2", "7_4", "7_7"]
             .map(String::from)
             .to_vec(),
-        Effort::Standard => table.primes_up_to(7).map(|k| k.name.clone()).collect(),
+        _ => table.primes_up_to(7).map(|k| k.name.clone()).collect(),
     };
-    let levels: &[f64] = match effort {
-        Effort::Draft => &[2.0, 4.0, 8.0],
-        Effort::Standard => &[2.0, 4.0, 8.0, 16.0],
+    let levels: &[f64] = match preset {
+        Preset::Draft => &[2.0, 4.0, 8.0],
+        _ => &[2.0, 4.0, 8.0, 16.0],
     };
     let mut trials = Vec::new();
     for name in names {

@@ -239,8 +239,8 @@ impl FlowCoupling {
         assert!(q.len() == n && h.len() == n, "fields of another grid");
         let director = Director {
             stencil: &self.stencil,
-            q,
-            h,
+            q: T::either(q),
+            h: T::either(h),
             weights: self.weights.as_deref(),
             alignment: self.alignment,
         };

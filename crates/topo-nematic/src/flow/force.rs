@@ -2,23 +2,24 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use fearless_simd::{Level, Simd, SimdBase, dispatch, f64x8};
+use fearless_simd::{Level, Simd, SimdBase, f64x8};
 use rayon::prelude::*;
 
 use super::rate::open;
-use super::stencil::{Ends, MARGIN, N_LANES, Row, Segment, Stencil, Stored, TILE, WIDE, store};
+use super::stencil::{Either, Ends, MARGIN, N_LANES, Row, Segment, Stencil, TILE, WIDE, store};
 use super::terms::{contract, six, stress};
 use crate::grid::Faces;
 use crate::stokes::MacField;
+use crate::vector::dispatch;
 
 /// Planes of one job: each job computes the stress of as many more on either side as differences reach.
 const SLAB: usize = 12;
 
 /// Q, H and what they act through.
-pub(super) struct Director<'a, T> {
+pub(super) struct Director<'a> {
     pub stencil: &'a Stencil,
-    pub q: &'a [T],
-    pub h: &'a [T],
+    pub q: Either<'a>,
+    pub h: Either<'a>,
     pub weights: Option<&'a [f64]>,
     pub alignment: f64,
 }
@@ -50,7 +51,7 @@ fn width(stencil: &Stencil) -> usize {
     stencil.cells[0].next_multiple_of(N_LANES) + N_LANES
 }
 
-impl<T: Stored> Director<'_, T> {
+impl Director<'_> {
     /// Writes the force on all faces.
     ///
     /// ```math
@@ -96,13 +97,21 @@ impl<T: Stored> Director<'_, T> {
 
     /// The five components of a row from `start` on, with a margin on either end.
     #[inline(always)]
-    fn tensor(&self, field: &[T], row: Row, start: usize) -> [Segment; 5] {
+    fn tensor(&self, field: Either, row: Row, start: usize) -> [Segment; 5] {
         let n_cells = field.len() / 5;
         let s = self.stencil;
         let mut tensor = [const { Segment::zero() }; 5];
         for c in 0..5 {
-            let values = s.values(&field[c * n_cells..(c + 1) * n_cells], row);
-            tensor[c].add(values, None, start, Ends::Wrap, 1.0);
+            let range = c * n_cells..(c + 1) * n_cells;
+            let segment = &mut tensor[c];
+            match field {
+                Either::Double(field) => {
+                    segment.add(s.values(&field[range], row), None, start, Ends::Wrap, 1.0);
+                }
+                Either::Single(field) => {
+                    segment.add(s.values(&field[range], row), None, start, Ends::Wrap, 1.0);
+                }
+            }
         }
         tensor
     }

@@ -1,9 +1,10 @@
 //! What is read off a velocity field.
 
-use fearless_simd::{Level, dispatch};
+use fearless_simd::Level;
 
 use super::rate::Flow;
 use crate::stokes::MacField;
+use crate::vector::dispatch;
 
 /// Curl of the velocity at the cell centres, component-major.
 pub(super) fn vorticity(flow: &Flow, level: Level) -> Vec<f64> {

@@ -1,11 +1,12 @@
 //! Advection, co-rotation and alignment by a given velocity.
 
-use fearless_simd::{Level, Simd, SimdBase, dispatch, f64x8};
+use fearless_simd::{Level, Simd, SimdBase, f64x8};
 use rayon::prelude::*;
 
 use super::stencil::{Ends, N_LANES, Segment, Stencil, Stored, TILE, WIDE, load, store};
 use super::terms::turn_and_align;
 use crate::stokes::MacField;
+use crate::vector::dispatch;
 
 /// A frozen velocity and what it acts on.
 pub(super) struct Flow<'a> {

@@ -17,6 +17,27 @@ pub trait Stored: Copy + Send + Sync + Into<f64> + 'static {
 
     /// Rounds to eight successive numbers.
     fn store<S: Simd>(values: f64x8<S>, to: &mut [Self]);
+
+    /// Numbers of either type, for what is compiled once for both.
+    fn either(values: &[Self]) -> Either<'_>;
+}
+
+/// Stored numbers whose type is known when they are read.
+#[derive(Debug, Clone, Copy)]
+pub enum Either<'a> {
+    /// 8 bytes each.
+    Double(&'a [f64]),
+    /// 4 bytes each.
+    Single(&'a [f32]),
+}
+
+impl Either<'_> {
+    pub(super) fn len(self) -> usize {
+        match self {
+            Self::Double(values) => values.len(),
+            Self::Single(values) => values.len(),
+        }
+    }
 }
 
 impl Stored for f64 {
@@ -33,6 +54,10 @@ impl Stored for f64 {
     #[inline(always)]
     fn store<S: Simd>(values: f64x8<S>, to: &mut [Self]) {
         values.store_slice(to);
+    }
+
+    fn either(values: &[Self]) -> Either<'_> {
+        Either::Double(values)
     }
 }
 
@@ -53,6 +78,10 @@ impl Stored for f32 {
         for (x, value) in to.iter_mut().zip(values.to_array()) {
             *x = value as f32;
         }
+    }
+
+    fn either(values: &[Self]) -> Either<'_> {
+        Either::Single(values)
     }
 }
 

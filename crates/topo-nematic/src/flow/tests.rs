@@ -6,7 +6,7 @@ use fearless_simd::Level;
 
 use super::force::{Director, Window};
 use super::rate::Flow;
-use super::stencil::Stencil;
+use super::stencil::{Either, Stencil};
 use super::{FlowCoupling, FlowParameters};
 use crate::grid::{Faces, Grid};
 use crate::material::Material;
@@ -95,8 +95,8 @@ fn force_is_the_adjoint_of_the_rate() {
             let mut windows = [Window::new(&stencil), Window::new(&stencil)];
             let director = Director {
                 stencil: &stencil,
-                q: &q,
-                h: &h,
+                q: Either::Double(&q),
+                h: Either::Double(&h),
                 weights,
                 alignment: 0.7,
             };

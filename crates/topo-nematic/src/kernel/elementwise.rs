@@ -1,11 +1,12 @@
 //! Passes that need no neighbours.
 
-use fearless_simd::{Simd, dispatch};
+use fearless_simd::Simd;
 use rayon::prelude::*;
 
 use crate::kernel::run::{Kernel, Threads};
 use crate::real::Real;
 use crate::tensor::contract;
+use crate::vector::dispatch;
 
 /// Numbers a task treats.
 const CHUNK: usize = 1 << 14;
@@ -36,19 +37,37 @@ impl<T: Real> Kernel<T> {
         }
     }
 
+    /// Calls `work` with each chunk of `a`, and its number.
+    fn by_chunks(&self, a: &mut [T], work: &(dyn Fn(usize, &mut [T]) + Sync)) {
+        match self.threads {
+            Threads::One => a
+                .chunks_mut(CHUNK)
+                .enumerate()
+                .for_each(|(k, a)| work(k, a)),
+            Threads::All => a
+                .par_chunks_mut(CHUNK)
+                .enumerate()
+                .for_each(|(k, a)| work(k, a)),
+        }
+    }
+
+    /// What `work` gives for each of `n` numbers.
+    fn by_numbers(&self, n: usize, work: &(dyn Fn(usize) -> f64 + Sync)) -> Vec<f64> {
+        match self.threads {
+            Threads::One => (0..n).map(work).collect(),
+            Threads::All => (0..n).into_par_iter().map(work).collect(),
+        }
+    }
+
     /// a <- sum of factors times arrays, `a` itself with the factor `on_a`.
     pub(crate) fn linear<const N: usize>(&self, a: &mut [T], on_a: f64, others: [(f64, &[T]); N]) {
         let on_a = T::of(on_a);
         let others = others.map(|(f, x)| (T::of(f), x));
-        let work = |(chunk, a): (usize, &mut [T])| {
+        self.by_chunks(a, &|chunk, a| {
             let (from, to) = (chunk * CHUNK, chunk * CHUNK + a.len());
             let others = others.map(|(f, x)| (f, &x[from..to]));
             dispatch!(self.level(), simd => linear(simd, a, on_a, others));
-        };
-        match self.threads {
-            Threads::One => a.chunks_mut(CHUNK).enumerate().for_each(work),
-            Threads::All => a.par_chunks_mut(CHUNK).enumerate().for_each(work),
-        }
+        });
     }
 
     /// Largest Frobenius norm of a tensor of `a`.
@@ -69,11 +88,7 @@ impl<T: Real> Kernel<T> {
             let (from, to) = (chunk * CHUNK, (chunk * CHUNK + CHUNK).min(n));
             dispatch!(self.level(), simd => squares(simd, arrays, self.stride, from, to))
         };
-        let n_chunks = n.div_ceil(CHUNK);
-        let sums: Vec<f64> = match self.threads {
-            Threads::One => (0..n_chunks).map(row).collect(),
-            Threads::All => (0..n_chunks).into_par_iter().map(row).collect(),
-        };
+        let sums = self.by_numbers(n.div_ceil(CHUNK), &row);
         (sums.iter().sum::<f64>() / self.domain.n_active.max(1) as f64).sqrt()
     }
 }

@@ -1,16 +1,17 @@
 //! Passes over the whole domain, plane by plane, by one thread or by all, with the same bits.
 
-use fearless_simd::{Level, Simd, dispatch};
+use fearless_simd::{Level, Simd};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::domain::{Domain, SpecialCell, Wall, face_index};
 use crate::kernel::combine::{Combine, Factors};
 use crate::kernel::second::SecondElastic;
-use crate::kernel::{Coefficients, Copies, InField, Sides, Stretch, pass};
+use crate::kernel::{Coefficients, Stretch, pass};
 use crate::material::Material;
 use crate::real::{Lanes, One, Real, Wide};
 use crate::tensor::{Tensor5, contract};
+use crate::vector::dispatch;
 
 /// How many threads share one field.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -25,6 +26,9 @@ pub enum Threads {
 
 /// Sums of H:H (forces scaled for relaxation), H:X, X:X and of mass times H:H.
 pub(crate) type Sums = [f64; 4];
+
+/// What is done to a plane of cells: its number, its part of the output by components, scratch memory.
+type PlaneWork<'a, T> = dyn Fn(usize, [&mut [T]; 5], &mut Vec<T>) -> Sums + Sync + 'a;
 
 /// The molecular field of one domain in one precision.
 #[derive(Debug, Clone)]
@@ -177,17 +181,14 @@ impl<T: Real> Kernel<T> {
     ) -> Sums {
         let n = self.stride;
         debug_assert!(q.len() == 5 * n && out.len() == 5 * n);
-        self.by_planes(out, |k, out, ghosts| {
-            dispatch!(self.level, simd => self.plane::<_, OLD, INPUTS, SUMS>(simd, k, q, what, out, ghosts))
+        self.by_planes(out, &|k, mut out, scratch| {
+            let runs = dispatch!(self.level, simd => self.runs::<_, OLD, INPUTS, SUMS>(simd, k, q, what, &mut out, scratch));
+            self.special_cells::<OLD, INPUTS, SUMS>(runs, k, q, what, out)
         })
     }
 
     /// Calls `work` with each plane of cells, its part of `out` and scratch memory; the sums are the same for any number of threads.
-    pub(crate) fn by_planes(
-        &self,
-        out: &mut [T],
-        work: impl Fn(usize, [&mut [T]; 5], &mut Vec<T>) -> Sums + Sync,
-    ) -> Sums {
+    pub(crate) fn by_planes(&self, out: &mut [T], work: &PlaneWork<'_, T>) -> Sums {
         let [nx, ny, nz] = self.domain.grid.cells();
         let plane = nx * ny;
         let [a, b, c, d, e] = self.components_mut(out);
@@ -229,20 +230,18 @@ impl<T: Real> Kernel<T> {
     }
 
     #[inline(always)]
-    fn plane<S: Simd, const OLD: bool, const INPUTS: usize, const SUMS: bool>(
+    fn runs<S: Simd, const OLD: bool, const INPUTS: usize, const SUMS: bool>(
         &self,
         simd: S,
         k: usize,
         q: &[T],
         what: &Combination<'_, T, INPUTS>,
-        mut out: [&mut [T]; 5],
-        ghosts: &mut Vec<T>,
+        out: &mut [&mut [T]; 5],
+        scratch: &mut Vec<T>,
     ) -> Sums {
-        let grid = &self.domain.grid;
-        let [nx, ny, _] = grid.cells();
-        let (n, first) = (self.stride, k * nx * ny);
+        let [nx, ny, _] = self.domain.grid.cells();
+        let first = k * nx * ny;
         let mut sums = [0.0; 4];
-        ghosts.resize(20 * nx, T::of(0.0));
         for run in self.domain.runs_of(k) {
             let (start, length) = (run.start as usize, run.length as usize);
             let j = (start - first) / nx;
@@ -252,21 +251,73 @@ impl<T: Real> Kernel<T> {
                 local: start - first,
             };
             let ends = self.ends(q, &at, [j, k]);
-            let part = if self.is_inner([j, k]) {
-                let sides = InField(self.neighbour_rows(start, [j, k]));
-                self.run_passes::<_, _, OLD, INPUTS, SUMS>(
-                    simd, q, &at, ends, sides, what, &mut out,
-                )
+            let stretch = if self.is_inner([j, k]) {
+                Stretch {
+                    field: self.components(q),
+                    start,
+                    length,
+                    sides: self.neighbour_rows(start, [j, k]),
+                    ends,
+                }
             } else {
-                self.write_ghosts(q, start, length, [j, k], ghosts);
-                let sides = Copies(self.side_rows(q, start, length, [j, k], ghosts));
-                self.run_passes::<_, _, OLD, INPUTS, SUMS>(
-                    simd, q, &at, ends, sides, what, &mut out,
-                )
+                self.copied(q, &at, [j, k], ends, scratch)
             };
+            let part =
+                self.run_passes::<_, OLD, INPUTS, SUMS>(simd, &at, &stretch, what, &mut *out);
             sums.iter_mut().zip(part).for_each(|(s, x)| *s += x);
             sums[3] += part[0];
         }
+        sums
+    }
+
+    /// A run next to walls, copied with its neighbours and what lies beyond the walls: few runs are, and kernels need not be
+    /// compiled for them.
+    #[inline(never)]
+    fn copied<'a>(
+        &self,
+        q: &[T],
+        at: &Place,
+        jk: [usize; 2],
+        ends: [[T; 5]; 2],
+        scratch: &'a mut Vec<T>,
+    ) -> Stretch<'a, T> {
+        let nx = self.domain.grid.cells()[0];
+        scratch.resize(45 * nx, T::of(0.0));
+        let (ghosts, copies) = scratch.split_at_mut(20 * nx);
+        self.write_ghosts(q, at.start, at.length, jk, ghosts);
+        let sides = self.side_rows(q, at.start, at.length, jk, ghosts);
+        let mut rest = copies;
+        let field = std::array::from_fn(|c| {
+            let (component, after) = std::mem::take(&mut rest).split_at_mut(5 * nx);
+            rest = after;
+            let own = &q[c * self.stride + at.start..][..at.length];
+            let rows = [own, sides[0][c], sides[1][c], sides[2][c], sides[3][c]];
+            for (to, row) in component.chunks_exact_mut(nx).zip(rows) {
+                to[..at.length].copy_from_slice(row);
+            }
+            &*component
+        });
+        Stretch {
+            field,
+            start: 0,
+            length: at.length,
+            sides: [nx, 2 * nx, 3 * nx, 4 * nx],
+            ends,
+        }
+    }
+
+    /// The same combination in the cells whose links or volumes are not whole, in double precision; adds to `sums`.
+    #[inline(never)]
+    fn special_cells<const OLD: bool, const INPUTS: usize, const SUMS: bool>(
+        &self,
+        mut sums: Sums,
+        k: usize,
+        q: &[T],
+        what: &Combination<'_, T, INPUTS>,
+        out: [&mut [T]; 5],
+    ) -> Sums {
+        let [nx, ny, _] = self.domain.grid.cells();
+        let (n, first) = (self.stride, k * nx * ny);
         for special in self.domain.special_of(k) {
             let cell = special.cell as usize;
             let value = |x: &[T]| -> Tensor5 { std::array::from_fn(|c| x[c * n + cell].into()) };
@@ -465,28 +516,14 @@ impl<T: Real> Kernel<T> {
 
     /// One run, by vectors if it is long enough for one.
     #[inline(always)]
-    #[allow(clippy::too_many_arguments)] // all of them are what one row needs, and the function is inlined
-    fn run_passes<S, D, const OLD: bool, const INPUTS: usize, const SUMS: bool>(
+    fn run_passes<S: Simd, const OLD: bool, const INPUTS: usize, const SUMS: bool>(
         &self,
         simd: S,
-        q: &[T],
         at: &Place,
-        ends: [[T; 5]; 2],
-        sides: D,
+        stretch: &Stretch<'_, T>,
         what: &Combination<'_, T, INPUTS>,
         out: &mut [&mut [T]; 5],
-    ) -> Sums
-    where
-        S: Simd,
-        D: Sides<Wide<S, T>> + Sides<One<T>>,
-    {
-        let stretch = Stretch {
-            field: self.components(q),
-            start: at.start,
-            length: at.length,
-            sides,
-            ends,
-        };
+    ) -> Sums {
         let mut inputs = [[&[][..]; 5]; INPUTS];
         for k in 0..INPUTS {
             inputs[k] = self.components(what.inputs[k].1);
@@ -494,25 +531,17 @@ impl<T: Real> Kernel<T> {
         let [a, b, c, d, e] = out;
         let out = [&mut **a, &mut **b, &mut **c, &mut **d, &mut **e];
         if at.length >= <Wide<S, T> as Lanes>::N {
-            run_pass::<Wide<S, T>, D, OLD, INPUTS, SUMS>(
+            run_pass::<Wide<S, T>, OLD, INPUTS, SUMS>(
                 simd,
-                &stretch,
+                stretch,
                 &self.coefficients,
                 what,
                 inputs,
                 out,
-                at.local,
+                at,
             )
         } else {
-            run_pass::<One<T>, D, OLD, INPUTS, SUMS>(
-                (),
-                &stretch,
-                &self.coefficients,
-                what,
-                inputs,
-                out,
-                at.local,
-            )
+            short_pass::<T, OLD, INPUTS, SUMS>(stretch, &self.coefficients, what, inputs, out, at)
         }
     }
 }
@@ -542,15 +571,28 @@ fn component_stride(n_cells: usize, n_bytes: usize) -> usize {
         .unwrap_or(n_cells)
 }
 
+/// A run that is shorter than a vector, cell by cell; compiled once, not for each instruction set.
+#[inline(never)]
+fn short_pass<T: Real, const OLD: bool, const INPUTS: usize, const SUMS: bool>(
+    stretch: &Stretch<'_, T>,
+    k: &Coefficients<T>,
+    what: &Combination<'_, T, INPUTS>,
+    inputs: [[&[T]; 5]; INPUTS],
+    out: [&mut [T]; 5],
+    at: &Place,
+) -> Sums {
+    run_pass::<One<T>, OLD, INPUTS, SUMS>((), stretch, k, what, inputs, out, at)
+}
+
 #[inline(always)]
-fn run_pass<L: Lanes, D: Sides<L>, const OLD: bool, const INPUTS: usize, const SUMS: bool>(
+fn run_pass<L: Lanes, const OLD: bool, const INPUTS: usize, const SUMS: bool>(
     token: L::Token,
-    stretch: &Stretch<'_, L::Scalar, D>,
+    stretch: &Stretch<'_, L::Scalar>,
     k: &Coefficients<L::Scalar>,
     what: &Combination<'_, L::Scalar, INPUTS>,
     inputs: [[&[L::Scalar]; 5]; INPUTS],
     out: [&mut [L::Scalar]; 5],
-    out_start: usize,
+    at: &Place,
 ) -> Sums {
     let zero = L::splat(token, L::Scalar::of(0.0));
     let mut on_inputs = [zero; 2];
@@ -565,8 +607,8 @@ fn run_pass<L: Lanes, D: Sides<L>, const OLD: bool, const INPUTS: usize, const S
             on_inputs,
         },
         out,
-        out_start,
-        start: stretch.start,
+        out_start: at.local,
+        start: at.start,
         inputs,
         kept: [zero; 5],
         sums: [zero; 3],

@@ -1,7 +1,8 @@
 //! Errors of the flow solvers.
 
 use thiserror::Error;
-use topo_core::{InvalidValue, SparseError};
+use topo_core::InvalidValue;
+use topo_sparse::SparseError;
 
 /// Why a flow could not be set up or solved.
 #[derive(Debug, Clone, PartialEq, Error)]

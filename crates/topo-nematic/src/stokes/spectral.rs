@@ -3,12 +3,13 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use fearless_simd::{Level, Simd, dispatch};
+use fearless_simd::{Level, Simd};
 use rayon::prelude::*;
 
-use crate::fft::{Complex64, LineFft, PlaneFft, PlaneScratch};
 use crate::grid::{Faces, Grid};
 use crate::stokes::{FaceSites, MacField, StokesError, StokesSolver};
+use crate::vector::dispatch;
+use topo_fourier::{Complex64, LineFft, PlaneFft, PlaneScratch};
 
 use self::lanes::Lines;
 use self::symbol::Symbol;

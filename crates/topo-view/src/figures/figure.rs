@@ -5,7 +5,7 @@ use std::path::Path;
 use crate::data::Sweep;
 use crate::error::ViewError;
 use crate::plot::canvas::Picture;
-use crate::quality::Quality;
+use topo_lab::Preset;
 
 /// What a figure draws from.
 #[derive(Debug, Clone, Copy)]
@@ -13,7 +13,7 @@ pub struct Context<'a> {
     /// Folder of the results.
     pub results: &'a Path,
     /// Said on the face.
-    pub quality: Quality,
+    pub quality: Preset,
     /// Factor on the pixels of the PNG; 1 for print.
     pub detail: f64,
     /// Whether tight knots are thin tubes with their struts.
@@ -48,7 +48,7 @@ pub struct Figure {
 }
 
 /// Foot of the elastic figures: quality, and where the runs depart from the published ones.
-pub(super) fn face(sweep: &Sweep, quality: Quality) -> Vec<String> {
+pub(super) fn face(sweep: &Sweep, quality: Preset) -> Vec<String> {
     let first = sweep.cases[0].first();
     let reading = match first.reading.as_str() {
         "shrunk" => "*L* = 50 *h*, contact diameter 2*h* min(1, 50/Rop)",

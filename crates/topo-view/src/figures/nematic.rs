@@ -11,9 +11,9 @@ use crate::plot::color::{QUIET, Rgb, Scale};
 use crate::plot::panel::{Axis, Panel};
 use crate::plot::solids::{Solids, view};
 use crate::plot::style::Style;
-use crate::quality::Quality;
 use nalgebra::Vector3;
 use topo_analysis::buckling;
+use topo_lab::Preset;
 
 /// Colour of director rods.
 const ROD: Rgb = [120, 160, 110];
@@ -136,7 +136,7 @@ pub fn mark_onset(sweep: &NematicSweep, canvas: &mut Canvas, panel: &Panel) {
 }
 
 /// Foot of the nematic figures: quality, and where the runs depart from the published ones.
-pub fn face(sweep: &NematicSweep, quality: Quality) -> Vec<String> {
+pub fn face(sweep: &NematicSweep, quality: Preset) -> Vec<String> {
     let first = &sweep.rows[0];
     let flow = match (first.flow.as_str(), sweep.flowing.is_empty()) {
         ("on", _) => "with flow".to_owned(),

@@ -1,13 +1,13 @@
 //! Every figure drawn from made-up results.
 
 use super::*;
-use crate::quality::Quality;
 use crate::{gallery, provenance, reproduction, scenes, synthetic};
+use topo_lab::Preset;
 
 fn context(results: &Path) -> Context<'_> {
     Context {
         results,
-        quality: Quality::Draft,
+        quality: Preset::Draft,
         detail: 0.15,
         struts: false,
     }
@@ -64,20 +64,18 @@ fn every_figure_is_drawn_with_its_files_and_told_in_the_gallery() {
         );
         done.push(d);
     }
-    let mut p = provenance::Provenance::collect(
-        Some(Path::new(env!("CARGO_MANIFEST_DIR"))),
-        Quality::Draft,
-    );
+    let mut p =
+        provenance::Provenance::collect(Some(Path::new(env!("CARGO_MANIFEST_DIR"))), Preset::Draft);
     p.drew(&done);
     p.warn("slow; slow");
     p.write(dir.path()).unwrap();
     let claims = reproduction::findings(dir.path()).unwrap();
-    scenes::write(dir.path(), Quality::Draft).unwrap();
+    scenes::write(dir.path(), Preset::Draft).unwrap();
     let page = gallery::Page {
         done: &done.iter().collect::<Vec<_>>(),
         movies: &[],
         claims: &claims,
-        quality: Quality::Draft,
+        quality: Preset::Draft,
         provenance: &p,
     };
     gallery::write(dir.path(), &page).unwrap();
@@ -177,17 +175,15 @@ fn look() {
         ..context(results)
     };
     let done: Vec<Done> = ALL.iter().map(|f| draw(*f, &full).unwrap()).collect();
-    let mut p = provenance::Provenance::collect(
-        Some(Path::new(env!("CARGO_MANIFEST_DIR"))),
-        Quality::Draft,
-    );
+    let mut p =
+        provenance::Provenance::collect(Some(Path::new(env!("CARGO_MANIFEST_DIR"))), Preset::Draft);
     p.drew(&done);
     p.write(results).unwrap();
     let page = gallery::Page {
         done: &done.iter().collect::<Vec<_>>(),
         movies: &[],
         claims: &reproduction::findings(results).unwrap(),
-        quality: Quality::Draft,
+        quality: Preset::Draft,
         provenance: &p,
     };
     gallery::write(results, &page).unwrap();

@@ -38,7 +38,7 @@ struct Actor {
 }
 
 fn clip(stage: &Stage<'_>) -> Result<Clip, ViewError> {
-    let scene = ElasticScene::published(stage.quality.preset());
+    let scene = ElasticScene::published(stage.quality);
     let table = KnotTable::builtin();
     let names = ["3_1".to_owned(), "7_4".to_owned()];
     let shapes = tight_shapes(

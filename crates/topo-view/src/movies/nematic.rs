@@ -10,8 +10,8 @@ use crate::plot::canvas::Canvas;
 use crate::plot::color::{INK, QUIET, Scale, VERMILION};
 use crate::plot::style::Style;
 use crate::plot::text;
-use crate::quality::Quality;
 use nalgebra::Vector3;
+use topo_lab::Preset;
 use topo_lab::{NematicFrame, NematicScene, nematic_frames};
 
 pub const MOVIE: Movie = Movie {
@@ -56,10 +56,10 @@ struct Shot {
 fn clip(stage: &Stage<'_>) -> Result<Clip, ViewError> {
     // the published size would take longer than everything else in the gallery
     let quality = match stage.quality {
-        Quality::Paper => Quality::Standard,
+        Preset::Paper => Preset::Standard,
         other => other,
     };
-    let mut scene = NematicScene::published(quality.preset());
+    let mut scene = NematicScene::published(quality);
     // the discharge is seen at its steps: more of them for smooth motion
     scene.accuracy.tolerance *= 0.25;
     let frames = nematic_frames(&scene, Q, 36.0, stage.interrupt)?;

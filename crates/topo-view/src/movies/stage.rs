@@ -8,7 +8,7 @@ use topo_core::Interrupt;
 use super::apng::Size;
 use crate::error::ViewError;
 use crate::plot::canvas::Canvas;
-use crate::quality::Quality;
+use topo_lab::Preset;
 
 /// Pixels of a frame.
 pub(crate) const SIZE: Size = Size {
@@ -25,7 +25,7 @@ pub struct Stage<'a> {
     /// Folder of the results.
     pub results: &'a Path,
     /// How much is computed.
-    pub quality: Quality,
+    pub quality: Preset,
     /// Asks to stop.
     pub interrupt: &'a Interrupt,
     /// Called after each frame.

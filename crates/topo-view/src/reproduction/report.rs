@@ -5,13 +5,13 @@ use super::{Finding, friction};
 use crate::data;
 use crate::error::ViewError;
 use crate::plot::text::escape;
-use crate::quality::Quality;
 use std::fmt::Write as _;
 use std::path::Path;
 use topo_analysis::write_table;
+use topo_lab::Preset;
 
 /// Writes `reproduction.json` and `reproduction.md` into the results folder, and `friction-study.csv` where that study was run.
-pub fn write(results: &Path, quality: Quality, findings: &[Finding]) -> Result<(), ViewError> {
+pub fn write(results: &Path, quality: Preset, findings: &[Finding]) -> Result<(), ViewError> {
     let mut json = serde_json::to_string_pretty(&serde_json::json!({
         "quality": quality,
         "findings": findings,
@@ -66,7 +66,7 @@ fn said(f: &Finding) -> String {
     text
 }
 
-fn markdown(quality: Quality, findings: &[Finding]) -> String {
+fn markdown(quality: Preset, findings: &[Finding]) -> String {
     let mut text = format!(
         "{quality} quality. {}.\n\n| | claim | published in | found here | outcome | decided by | seen in | depends on |\n|---|---|---|---|---|---|---|---|\n",
         summary(findings)

@@ -1,9 +1,9 @@
 //! What is written of claims, and that the documentation holds all of them.
 
 use super::*;
-use crate::quality::Quality;
 use crate::synthetic;
 use std::path::Path;
+use topo_lab::Preset;
 
 #[test]
 fn every_claim_is_looked_at_and_written() {
@@ -19,7 +19,7 @@ fn every_claim_is_looked_at_and_written() {
         all.iter()
             .all(|f| !f.found.contains("NaN") && !f.found.contains("inf"))
     );
-    write(dir.path(), Quality::Draft, &all).unwrap();
+    write(dir.path(), Preset::Draft, &all).unwrap();
     let text = std::fs::read_to_string(dir.path().join("reproduction.md")).unwrap();
     let rows: Vec<&str> = text.lines().filter(|l| l.starts_with('|')).collect();
     assert_eq!(rows.len(), all.len() + 2);

@@ -2,10 +2,10 @@
 
 use crate::figures::{self, Context};
 use crate::outside::Outside;
-use crate::quality::Quality;
 use crate::{gallery, provenance, reproduction, synthetic};
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use topo_lab::Preset;
 
 /// Moves sliders, chooses another state and reads pixels back; what it finds becomes the title of the page.
 const PROBE: &str = r#"<script>
@@ -50,21 +50,19 @@ fn page(folder: &Path) -> PathBuf {
     synthetic::nematic(folder);
     let context = Context {
         results: folder,
-        quality: Quality::Draft,
+        quality: Preset::Draft,
         detail: 0.15,
         struts: false,
     };
     let done = figures::draw(figures::ALL[0], &context).unwrap();
-    let p = provenance::Provenance::collect(
-        Some(Path::new(env!("CARGO_MANIFEST_DIR"))),
-        Quality::Draft,
-    );
+    let p =
+        provenance::Provenance::collect(Some(Path::new(env!("CARGO_MANIFEST_DIR"))), Preset::Draft);
     let claims = reproduction::findings(folder).unwrap();
     let shown = gallery::Page {
         done: &[&done],
         movies: &[],
         claims: &claims,
-        quality: Quality::Draft,
+        quality: Preset::Draft,
         provenance: &p,
     };
     gallery::write(folder, &shown).unwrap();

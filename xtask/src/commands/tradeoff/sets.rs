@@ -10,11 +10,11 @@ use crate::workspace::workspace;
 use topo_analysis::{read_table, write_table};
 use topo_cli::CliError;
 use topo_cli::commands::tradeoff::{kept, measure};
+use topo_lab::Preset;
 use topo_lab::{
     CaseSet, CheckRow, Factor, Measured, Point, Record, Stamp, System, TradeoffRow,
     check_estimates, compared, factor_of_estimates, ladder, points, table_hash,
 };
-use topo_view::Quality;
 use topo_view::data;
 use topo_view::provenance::commit;
 
@@ -73,7 +73,7 @@ pub fn record_table(system: System, rows: &[TradeoffRow]) -> Result<(), CliError
     write_table(&path, &points)?;
     say!("recorded: {}", path.display());
     write_record(table, &record)?;
-    let text = topo_view::tradeoff::section(Quality::Standard, system, rows);
+    let text = topo_view::tradeoff::section(Preset::Standard, system, rows);
     record_part(PAGE, &format!("{} settings", system.name()), &text)
 }
 

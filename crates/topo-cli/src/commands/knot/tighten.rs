@@ -1,7 +1,7 @@
 //! `topo knot tighten`: tight shapes with their certificates.
 
 use super::table::{self, Row};
-use crate::cli::{KnotQuality, TightenArgs};
+use crate::cli::TightenArgs;
 use crate::error::CliError;
 use crate::interrupt;
 use rayon::prelude::*;
@@ -78,15 +78,10 @@ fn letters(word: &str) -> Result<Vec<i32>, CliError> {
 }
 
 fn settings(args: &TightenArgs) -> TightenSettings {
-    let preset = match args.quality {
-        KnotQuality::Draft => TightenSettings::draft(),
-        KnotQuality::Standard => TightenSettings::standard(),
-        KnotQuality::Fine => TightenSettings::fine(),
-    };
     TightenSettings {
         n_inversions: args.inversions,
         seed: args.seed,
-        ..preset
+        ..args.quality.tighten()
     }
 }
 

@@ -1,6 +1,6 @@
 //! A symmetric multigrid cycle for one velocity component, over a factorised coarsest grid.
 
-use topo_core::SparseCholesky;
+use topo_sparse::SparseCholesky;
 
 use super::operator::Operator;
 use super::transfer::Transfer;

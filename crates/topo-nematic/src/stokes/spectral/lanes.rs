@@ -1,6 +1,6 @@
 //! Working memory for lines along z, several modes side by side.
 
-use crate::fft::Complex64;
+use topo_fourier::Complex64;
 
 /// Modes k_y that are solved side by side.
 pub(super) const N_LANES: usize = 16;

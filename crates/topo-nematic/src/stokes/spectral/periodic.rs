@@ -3,7 +3,7 @@
 use super::Planes;
 use super::lanes::{Lines, N_LANES};
 use super::symbol::Symbol;
-use crate::fft::{Complex64, LineFft};
+use topo_fourier::{Complex64, LineFft};
 
 /// Solves for all k_y of one k_x.
 pub(super) fn solve_column(

@@ -3,7 +3,7 @@
 use super::Planes;
 use super::lanes::{Lane, Lines, N_LANES};
 use super::symbol::Symbol;
-use crate::fft::Complex64;
+use topo_fourier::Complex64;
 
 /// What all modes of a block share along their lines.
 struct Block {

@@ -2,8 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use crate::fft::Complex64;
 use crate::grid::Grid;
+use topo_fourier::Complex64;
 
 /// Symbols of the backward difference, spacing 1, and the factor that turns forces into velocities.
 pub(super) struct Symbol {

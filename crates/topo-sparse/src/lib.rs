@@ -1,4 +1,6 @@
 //! Sparse Cholesky factorisation with a fixed pattern: the one file that names faer.
+//!
+//! A crate of its own, so that only what factorises waits for faer to be compiled.
 
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::linalg::cholesky::llt::factor::LltError as PivotError;
@@ -12,8 +14,10 @@ use faer::{Conj, MatMut, Par, Side};
 
 use self::pattern::{checked_permutation, triangle};
 use self::substitute::{Panel, substitute};
-use crate::error::SparseError;
 
+pub use error::SparseError;
+
+mod error;
 mod pattern;
 mod substitute;
 

@@ -1,20 +1,23 @@
 //! Fourier transforms of planes and lines: the one file that names rustfft and realfft.
+//!
+//! A crate of its own, because all transforms are generic and compiled where they are first used with doubles: here, beside
+//! what needs them and not again with each change of it.
 
 use std::sync::Arc;
 
 use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
 use rustfft::{Fft, FftPlanner};
 
-pub(crate) use rustfft::num_complex::Complex;
+pub use rustfft::num_complex::Complex;
 
 /// A complex number of the transforms.
-pub(crate) type Complex64 = Complex<f64>;
+pub type Complex64 = Complex<f64>;
 
 /// Edge of the square blocks in which a plane is transposed: two of them fit in the first cache.
 const BLOCK: usize = 8;
 
 /// Unnormalised transforms of real planes of n_x x n_y numbers, x running fastest, into n_x/2 + 1 columns of n_y modes.
-pub(crate) struct PlaneFft {
+pub struct PlaneFft {
     n_x: usize,
     n_y: usize,
     forward_x: Arc<dyn RealToComplex<f64>>,
@@ -24,7 +27,7 @@ pub(crate) struct PlaneFft {
 }
 
 /// What one thread needs to transform a plane.
-pub(crate) struct PlaneScratch {
+pub struct PlaneScratch {
     row: Vec<f64>,
     /// Row after row of modes along x.
     rows: Vec<Complex64>,
@@ -34,6 +37,7 @@ pub(crate) struct PlaneScratch {
 }
 
 impl PlaneScratch {
+    /// Bytes of the buffers.
     pub fn n_bytes(&self) -> usize {
         let n_modes = self.rows.len() + self.columns.len() + self.fft.len();
         n_modes * size_of::<Complex64>() + self.row.len() * size_of::<f64>()
@@ -41,6 +45,7 @@ impl PlaneScratch {
 }
 
 impl PlaneFft {
+    /// Plans the transforms of planes of `n_x` x `n_y` numbers.
     pub fn new(n_x: usize, n_y: usize) -> Self {
         let (mut real, mut complex) = (RealFftPlanner::new(), FftPlanner::new());
         Self {
@@ -58,6 +63,7 @@ impl PlaneFft {
         self.n_x / 2 + 1
     }
 
+    /// Room for one thread.
     pub fn scratch(&self) -> PlaneScratch {
         let n_fft = [
             self.forward_x.get_scratch_len(),
@@ -141,12 +147,13 @@ impl PlaneFft {
 }
 
 /// Unnormalised complex transforms of lines.
-pub(crate) struct LineFft {
+pub struct LineFft {
     forward: Arc<dyn Fft<f64>>,
     inverse: Arc<dyn Fft<f64>>,
 }
 
 impl LineFft {
+    /// Plans the transforms of lines of `n` numbers.
     pub fn new(n: usize) -> Self {
         let mut planner = FftPlanner::new();
         Self {
@@ -155,6 +162,7 @@ impl LineFft {
         }
     }
 
+    /// Room for one thread.
     pub fn scratch(&self) -> Vec<Complex64> {
         let n = self
             .forward
