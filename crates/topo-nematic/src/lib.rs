@@ -17,6 +17,8 @@ mod kernel;
 mod material;
 mod memory;
 mod model;
+#[cfg(test)]
+mod noise;
 mod order;
 mod parameters;
 mod particle;
