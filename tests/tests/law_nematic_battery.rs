@@ -2,7 +2,7 @@
 
 use topo_core::Interrupt;
 use topo_nematic::{
-    Anchoring, Boundary, ChargeSettings, ChargedNematic, Discharge, DischargeSettings,
+    Anchoring, Boundary, ChargeSettings, ChargeStop, ChargedNematic, Discharge, DischargeSettings,
     FlowParameters, FreeSurface, Material, NematicAccuracy, NematicBattery, NematicParameters,
     NematicState, Precision, Progress, RunHooks, SurfacePattern, SwitchSettings, SwitchTarget,
     Threads,
@@ -168,7 +168,7 @@ fn law_threads_and_resumed_runs_give_the_same_bits() {
     let part = battery
         .charge(&ChargeSettings::default(), &mut hooks)
         .unwrap();
-    assert_eq!(part.report().stop, "interrupted");
+    assert_eq!(part.report().stop, ChargeStop::Interrupted);
     let mut hooks = RunHooks::new(&Interrupt::new()).with_checkpoint(&path, 1e6);
     let rest = battery
         .charge(&ChargeSettings::default(), &mut hooks)

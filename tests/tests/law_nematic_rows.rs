@@ -45,7 +45,7 @@ fn check(row: &NematicRow, scene: &NematicScene, case: usize) {
     let run = switched.discharge(&settings, hooks).unwrap();
     let (report, curve) = (&run.record.report, &run.record.curve);
     assert_eq!((row.radius, row.spacing, row.q), (6.0, 1.5, case.q));
-    assert_eq!(row.flow, if case.flow.is_some() { "on" } else { "off" });
+    assert_eq!(row.flow.is_on(), case.flow.is_some());
     assert_eq!(
         (row.boundary.as_str(), row.precision.as_str()),
         ("cut-link", "f64")

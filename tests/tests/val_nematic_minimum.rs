@@ -4,8 +4,9 @@ use std::f64::consts::PI;
 
 use topo_core::Interrupt;
 use topo_nematic::{
-    ChargeSettings, ChargedNematic, ExternalField, MinimumReport, MinimumState, NematicAccuracy,
-    NematicBattery, NematicParameters, Plate, Progress, RunHooks, Sides, SurfacePattern, Threads,
+    ChargeSettings, ChargeStop, ChargedNematic, ExternalField, MinimumReport, MinimumState,
+    NematicAccuracy, NematicBattery, NematicParameters, Plate, Progress, RunHooks, Sides,
+    SurfacePattern, Threads,
 };
 use topo_tests::threads::on_threads;
 
@@ -148,7 +149,7 @@ fn law_a_charge_stopped_in_its_check_or_after_a_kick_goes_on_to_the_same_bits() 
             .with_progress(&mut told)
             .with_checkpoint(&path, 1e6);
         let part = battery.charge(&settings, &mut hooks).unwrap();
-        assert_eq!(part.report().stop, "interrupted", "{stop_at}");
+        assert_eq!(part.report().stop, ChargeStop::Interrupted, "{stop_at}");
         assert_eq!(part.report().minimum, None);
         let mut hooks = RunHooks::new(calm).with_checkpoint(&path, 1e6);
         let rest = battery.charge(&settings, &mut hooks).unwrap();

@@ -14,16 +14,18 @@ mod statistics;
 mod table;
 mod timeline;
 mod times;
+mod warnings;
 
 pub use elastic::{
     Ensemble, Regime, Resonance, SweepRow, crossover, ensembles, regime, resonances,
 };
 pub use error::AnalysisError;
 pub use nematic::{
-    BUCKLED, LinePoint, NematicResonance, NematicRow, NematicSample, SlicePoint, buckling,
+    BUCKLED, Flow, LinePoint, NematicResonance, NematicRow, NematicSample, SlicePoint, buckling,
     late_rate, nematic_resonance, resonance_peak,
 };
 pub use statistics::{Spread, median, quantile, standard_deviation};
 pub use table::{KnotRow, parse_table, read_table, table_bytes, write_table};
 pub use timeline::{Timeline, TimelineSettings, TypedSample, UNKNOT};
 pub use times::{DischargeTimes, ELASTIC_SHARES, Interpolated, NEMATIC_SHARES};
+pub use warnings::{Warning, Warnings};

@@ -6,4 +6,4 @@ mod table;
 
 pub use late::late_rate;
 pub use resonance::{NematicResonance, buckling, nematic_resonance, resonance_peak};
-pub use table::{BUCKLED, LinePoint, NematicRow, NematicSample, SlicePoint};
+pub use table::{BUCKLED, Flow, LinePoint, NematicRow, NematicSample, SlicePoint};

@@ -36,7 +36,7 @@ pub fn dispatch(
         Command::Accuracy(args) => accuracy::run(&args),
         Command::Stability(args) => stability::run(&args),
         Command::Compare(args) => compare::run(&args),
-        Command::Export(args) => export::run(&args),
+        Command::Export(args) => export::run(&args, batteries),
     }
     .map(|()| ExitCode::SUCCESS)
 }

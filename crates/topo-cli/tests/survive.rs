@@ -1,5 +1,7 @@
 //! Sweeps that are killed without warning, as by `kill -9` or a power cut, and started again.
 
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
@@ -22,19 +24,6 @@ fn sweep(scene: &Path, out: &Path) -> Command {
     command
 }
 
-/// Numbers between 0 and 1 that look random and are the same every time.
-struct Moments(u64);
-
-impl Moments {
-    fn next(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6364136223846793005)
-            .wrapping_add(1442695040888963407);
-        (self.0 >> 11) as f64 / (1u64 << 53) as f64
-    }
-}
-
 /// Kills a sweep `n_kills` times, each time going on in what it left, and compares what is there in the end with an
 /// undisturbed run.
 fn survives(text: &str, n_kills: usize, seed: u64) {
@@ -45,7 +34,7 @@ fn survives(text: &str, n_kills: usize, seed: u64) {
     let start = Instant::now();
     assert!(sweep(&scene, &calm).status().unwrap().success());
     let whole = start.elapsed().as_secs_f64();
-    let mut moments = Moments(seed);
+    let mut moments = Pcg64::seed_from_u64(seed);
     let (mut kills, mut round) = (0, 0);
     while kills < n_kills {
         round += 1;
@@ -54,7 +43,9 @@ fn survives(text: &str, n_kills: usize, seed: u64) {
         // a sweep that gets to its end is followed by another in a folder of its own
         loop {
             let mut child = sweep(&scene, &torn).spawn().unwrap();
-            std::thread::sleep(Duration::from_secs_f64(0.6 * whole * moments.next()));
+            std::thread::sleep(Duration::from_secs_f64(
+                0.6 * whole * moments.random::<f64>(),
+            ));
             let finished = child.try_wait().unwrap().is_some();
             if !finished && kills < n_kills {
                 child.kill().unwrap();

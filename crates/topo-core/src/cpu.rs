@@ -1,11 +1,13 @@
 //! Processor time of the calling thread.
 
-use std::time::Instant;
+use std::time::{Duration, Instant};
+
+use cpu_time::ThreadTime;
 
 /// Measures the processor time of the thread that started it; elapsed time where the system does not tell.
 #[derive(Debug, Clone)]
 pub struct CpuClock {
-    start: Option<f64>,
+    start: Option<Duration>,
     instant: Instant,
 }
 
@@ -13,22 +15,21 @@ impl CpuClock {
     /// Starts now, for this thread.
     pub fn start() -> Self {
         Self {
-            start: thread_seconds(),
+            start: thread_time(),
             instant: Instant::now(),
         }
     }
 
     /// Seconds since the start.
     pub fn seconds(&self) -> f64 {
-        match (self.start, thread_seconds()) {
-            (Some(start), Some(now)) => now - start,
-            _ => self.instant.elapsed().as_secs_f64(),
-        }
+        let elapsed = match (self.start, thread_time()) {
+            (Some(start), Some(now)) => now.saturating_sub(start),
+            _ => self.instant.elapsed(),
+        };
+        elapsed.as_secs_f64()
     }
 }
 
-fn thread_seconds() -> Option<f64> {
-    let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
-    let nanoseconds: f64 = text.split_whitespace().next()?.parse().ok()?;
-    Some(1e-9 * nanoseconds)
+fn thread_time() -> Option<Duration> {
+    ThreadTime::try_now().ok().map(|time| time.as_duration())
 }

@@ -48,6 +48,6 @@ pub use observe::{Observer, Sample, Schedule, Scheduled};
 pub use simulation::{Interrupt, Simulation, StopCondition, StopReason};
 pub use snapshot::Snapshot;
 pub use units::{
-    RodMaterial, RodUnits, SILICONE, bending_time, energy_over_reference, reference_time,
-    twist_time,
+    RodMaterial, RodUnits, SILICONE, bending_time, energy_over_reference, reference_energy,
+    reference_time, twist_time,
 };

@@ -128,13 +128,18 @@ pub fn twist_time(twist_ratio: f64) -> f64 {
     1.0 / twist_ratio
 }
 
+/// E0 = E_b h^2 L of a rod of reduced `length` L, per cross section: the unit in which energies are reported.
+pub fn reference_energy(length: f64) -> f64 {
+    length / PI
+}
+
 /// An `energy` per cross section in units of E0 = E_b h^2 L, as energies are reported.
 ///
 /// ```math
 /// E / E_0 = e A / L, \quad A = \pi
 /// ```
 pub fn energy_over_reference(energy: f64, length: f64) -> f64 {
-    energy * PI / length
+    energy / reference_energy(length)
 }
 
 #[cfg(test)]

@@ -80,6 +80,9 @@ pub(crate) fn is_pierced([a, b, c]: [&V; 3], p: &V, q: &V) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use rand::{RngExt, SeedableRng};
+    use rand_pcg::Pcg64;
+
     use super::*;
 
     /// Six times the volume of a tetrahedron of integers.
@@ -98,13 +101,8 @@ mod tests {
     /// Points that all but lie in a plane: rounding alone gets hundreds of the signs wrong.
     #[test]
     fn volumes_have_the_sign_of_integer_arithmetic() {
-        let mut state = 1_u64;
-        let mut random = |n: i64| {
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695);
-            (state >> 33) as i64 % n
-        };
+        let mut rng = Pcg64::seed_from_u64(1);
+        let mut random = |n: i64| rng.random_range(0..n);
         let (mut n_zero, mut n_rounded) = (0, 0);
         for _ in 0..20_000 {
             let mut point = || [0; 3].map(|_: i64| random(1 << 30));

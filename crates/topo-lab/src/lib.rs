@@ -23,7 +23,6 @@ mod sweep;
 mod system;
 mod terms;
 mod tradeoff;
-mod warnings;
 mod wish;
 
 pub use battery::{Battery, Checked, Options, Scene, Stage, Sweep, Swept, parse_scene, read_scene};
@@ -44,7 +43,7 @@ pub use nematic::{
 pub use preset::Preset;
 pub use progress::{Event, Shard, SweepSettings, with_jobs};
 pub use scene::{Axis, AxisValue, Document, Numbers, folder_of, numbers};
-pub use stability::{StabilityRow, n_extremes, stability};
+pub use stability::{Ending, StabilityRow, n_extremes, stability};
 pub use sweep::{About, CaseFolder, CaseName, Experiment, FailedCase, Place, Row, SweepReport};
 pub use system::System;
 pub use terms::{TermCost, term_costs};

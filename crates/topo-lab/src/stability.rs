@@ -12,7 +12,7 @@ use topo_core::Interrupt;
 use crate::preset::Preset;
 use crate::system::System;
 use cell::Cell;
-pub use cell::StabilityRow;
+pub use cell::{Ending, StabilityRow};
 
 /// Runs all maps of a system on the present pool of threads, telling of each finished run; `known` ones are not run again.
 ///
@@ -85,7 +85,7 @@ mod tests {
             run: Box::new(|_| panic!("on purpose")),
         };
         let row = cell.run(&Interrupt::new());
-        assert_eq!((row.outcome.as_str(), row.violations), ("stopped", 1));
+        assert_eq!((row.outcome, row.violations), (Ending::Stopped, 1));
         assert_eq!(row.reason, "panic: on purpose");
     }
 }

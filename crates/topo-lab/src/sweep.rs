@@ -17,7 +17,7 @@ use crate::cost::{Estimate, Stopwatch};
 use crate::folder::{Outcome, forget_checkpoints, tell_replaced, writable};
 use crate::progress::{Event, SweepSettings, with_jobs};
 use plan::Plan;
-use topo_analysis::write_table;
+use topo_analysis::{Warnings, write_table};
 
 pub use experiment::{Experiment, Row};
 pub use failed::FailedCase;
@@ -167,9 +167,8 @@ fn run_case<E: Experiment>(
     };
     match experiment.run(case, start, place) {
         Ok(Some(outcome)) => {
-            let said = outcome.rows.iter().map(Row::warnings);
-            let said: Vec<&str> = said.filter(|w| !w.is_empty()).collect();
-            tell(&said.join(";"));
+            let said = outcome.rows.iter().flat_map(Row::warnings);
+            tell(&said.cloned().collect::<Warnings>().to_string());
             Ok(Now::Done(outcome))
         }
         Ok(None) => Ok(Now::Untouched),

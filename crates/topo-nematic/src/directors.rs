@@ -137,11 +137,8 @@ mod tests {
 
     #[test]
     fn wide_vectors_give_the_bits_of_single_cells() {
-        let mut seed = 7_u64;
-        let mut next = || {
-            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-            (seed >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
-        };
+        let mut noise = crate::noise::noise(7);
+        let mut next = || 0.5 * noise.next().unwrap();
         for n in [1, 7, 8, 19, 200] {
             let cells: Vec<Tensor5> = (0..n)
                 .map(|k| match k % 7 {

@@ -17,6 +17,8 @@ mod kernel;
 mod material;
 mod memory;
 mod model;
+#[cfg(test)]
+mod noise;
 mod order;
 mod parameters;
 mod particle;
@@ -37,7 +39,9 @@ pub use battery::discharge::{Discharge, DischargeSettings};
 pub use battery::final_state::{FinalSource, FinalState};
 pub use battery::hooks::{Phase, Progress, RunHooks};
 pub use battery::minimum::MinimumReport;
-pub use battery::record::{ChargeReport, FlowReport, NematicSample, PhaseReport, RunRecord};
+pub use battery::record::{
+    ChargeReport, ChargeStop, FlowReport, NematicSample, PhaseReport, RunRecord,
+};
 pub use battery::switch::{SwitchSettings, SwitchTarget, SwitchedNematic};
 pub use boundary::{Boundary, FreeSurface};
 pub use defects::{CrossSection, DefectLine, defect_lines, director_field, order_field};

@@ -195,13 +195,8 @@ mod tests {
 
     #[test]
     fn eigenvalues_are_those_of_the_matrix() {
-        let mut state = 1_u64;
-        let mut next = || {
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1);
-            (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
-        };
+        let mut noise = crate::noise::noise(1);
+        let mut next = || 0.5 * noise.next().unwrap();
         for k in 0..2000 {
             let mut q: Tensor5 = std::array::from_fn(|_| next());
             if k % 3 == 0 {

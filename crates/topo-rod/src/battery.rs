@@ -190,7 +190,7 @@ impl RodSimulation {
         accuracy: &Accuracy,
         interrupt: &topo_core::Interrupt,
     ) -> Result<Self, RodError> {
-        let t0 = 2.0 * state.length();
+        let t0 = topo_core::reference_time(state.length());
         let control = StepControl::new(accuracy.tolerance, 1e-5 * t0)?
             .with_limits(RodBattery::LEAST_STEP * t0, 10.0 * t0)?
             .with_max_trials(accuracy.max_steps);

@@ -7,7 +7,7 @@ mod nematic;
 use crate::error::ViewError;
 pub use curves::{Curve, Moment, Snapshot, series, snapshots};
 pub use file::{read_csv, write};
-pub use nematic::{DefectLine, NematicSweep, Slice};
+pub use nematic::{DefectLine, NematicSweep, Slice, rings, slices};
 use std::path::Path;
 pub use topo_analysis::{KnotRow, SweepRow as Cut};
 

@@ -7,6 +7,7 @@ mod figure;
 mod knots_table;
 pub(crate) mod nematic;
 pub(crate) mod series;
+pub(crate) mod shapes;
 #[cfg(test)]
 mod tests;
 

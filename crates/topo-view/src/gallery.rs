@@ -13,7 +13,8 @@ use std::fmt::Write;
 use std::path::Path;
 use topo_lab::Preset;
 
-const STYLE: &str = "
+/// Looks of pages.
+pub(crate) const STYLE: &str = "
 :root{color-scheme:light dark;--ink:#1b1f24;--quiet:#5d6670;--line:#dde1e6;--ground:#fff;--card:#f7f8fa;--link:#0060a0}
 @media(prefers-color-scheme:dark){:root{--ink:#e8eaed;--quiet:#a0a8b2;--line:#343a42;--ground:#15181c;--card:#1d2127;--link:#7cc0f5}}
 *{box-sizing:border-box}body{margin:0;background:var(--ground);color:var(--ink);font:17px/1.5 'Source Sans 3',system-ui,sans-serif}

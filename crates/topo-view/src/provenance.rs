@@ -7,6 +7,7 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::Command;
+use topo_analysis::Warnings;
 use topo_lab::Estimate;
 use topo_lab::Preset;
 
@@ -80,10 +81,10 @@ impl Provenance {
         }
     }
 
-    /// Counts the warnings of a table's `warnings` column, separated by `;`.
-    pub fn warn(&mut self, warnings: &str) {
-        for warning in warnings.split(';').map(str::trim).filter(|w| !w.is_empty()) {
-            *self.warnings.entry(warning.to_owned()).or_insert(0) += 1;
+    /// Counts the warnings of a row.
+    pub fn warn(&mut self, warnings: &Warnings) {
+        for warning in warnings {
+            *self.warnings.entry(warning.to_string()).or_insert(0) += 1;
         }
     }
 

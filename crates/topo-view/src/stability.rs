@@ -252,6 +252,7 @@ fn reasons(rows: &[&StabilityRow]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use topo_lab::Ending;
 
     fn row(x: &str, y: &str, reason: &str, violations: u32, is_inner: bool) -> StabilityRow {
         StabilityRow {
@@ -260,11 +261,10 @@ mod tests {
             axis_y: "gamma".to_owned(),
             y: y.to_owned(),
             outcome: if reason.is_empty() {
-                "converged"
+                Ending::Converged
             } else {
-                "stopped"
-            }
-            .to_owned(),
+                Ending::Stopped
+            },
             reason: reason.to_owned(),
             seconds: 1.0,
             violations,

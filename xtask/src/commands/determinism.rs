@@ -1,6 +1,8 @@
 //! `cargo xtask determinism`: the same numbers from one thread, from two, and from runs killed at random moments.
 
 use crate::cli::DeterminismArgs;
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
@@ -30,7 +32,7 @@ pub fn run(args: &DeterminismArgs) -> Result<(), CliError> {
     topo_cli::check(&stop)?;
     let whole = start.elapsed();
     note!("two threads: {:.0} s", whole.as_secs_f64());
-    let mut moments = Moments(args.seed);
+    let mut moments = Pcg64::seed_from_u64(args.seed);
     let n_kills = torn(args, &place("killed"), whole, &mut moments)?;
     topo_cli::check(&stop)?;
     let mut n_differences = 0;
@@ -103,7 +105,7 @@ fn torn(
     args: &DeterminismArgs,
     out: &Path,
     whole: Duration,
-    moments: &mut Moments,
+    moments: &mut Pcg64,
 ) -> Result<u32, CliError> {
     let words = args.work("2", out);
     let failed = |e: std::io::Error| CliError::Step(e.to_string());
@@ -112,7 +114,7 @@ fn torn(
     let mut n_kills = 0;
     while n_kills < args.kills {
         let mut child = command(&words)?.spawn().map_err(failed)?;
-        let end = Instant::now() + Duration::from_secs_f64(2.0 * mean * moments.next());
+        let end = Instant::now() + Duration::from_secs_f64(2.0 * mean * moments.random::<f64>());
         while Instant::now() < end && child.try_wait().map_err(failed)?.is_none() {
             std::thread::sleep(POLL);
         }
@@ -126,19 +128,6 @@ fn torn(
     }
     finish(&words)?;
     Ok(n_kills)
-}
-
-/// Numbers between 0 and 1 that look random and are the same every time.
-struct Moments(u64);
-
-impl Moments {
-    fn next(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1u64 << 53) as f64
-    }
 }
 
 fn at(path: &Path) -> impl Fn(std::io::Error) -> CliError {
@@ -170,7 +159,5 @@ mod tests {
             args.work("1", Path::new("y")).join(" "),
             "run a.toml --jobs 1 --out y"
         );
-        let mut moments = Moments(1);
-        assert!((0..100).all(|_| (0.0..1.0).contains(&moments.next())));
     }
 }

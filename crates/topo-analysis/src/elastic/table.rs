@@ -1,5 +1,6 @@
 //! Rows of the elastic tables.
 
+use crate::warnings::Warnings;
 use serde::{Deserialize, Serialize};
 
 /// One discharge: energies in E_0 = E_b h² L, times in T_0 = 2 L η/(h E_b), L the row's own length.
@@ -88,8 +89,8 @@ pub struct SweepRow {
     pub rejected: u64,
     /// Processor seconds of this discharge and its share of the charge.
     pub cpu_seconds: f64,
-    /// Warnings, separated by `;`.
-    pub warnings: String,
+    /// What is doubtful about it.
+    pub warnings: Warnings,
 }
 
 impl SweepRow {

@@ -1,7 +1,41 @@
 //! Rows of the nematic tables: sweep, time series, defect lines, slices.
 
+use std::fmt;
+
 use serde::{Deserialize, Serialize};
 use topo_core::MinimumState;
+
+use crate::warnings::Warnings;
+
+/// Whether a discharge has a fluid that flows.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Flow {
+    /// No velocity is modelled.
+    #[default]
+    Off,
+    /// The fluid flows.
+    On,
+}
+
+impl Flow {
+    /// Whether the fluid flows.
+    pub fn is_on(self) -> bool {
+        self == Self::On
+    }
+}
+
+impl From<bool> for Flow {
+    fn from(is_on: bool) -> Self {
+        if is_on { Self::On } else { Self::Off }
+    }
+}
+
+impl fmt::Display for Flow {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(if self.is_on() { "on" } else { "off" })
+    }
+}
 
 /// One discharge of a charged colloid: lengths in ξ_N, energies in L ξ_N, times in τ_N.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -18,8 +52,8 @@ pub struct NematicRow {
     pub boundary: String,
     /// Storage of the field: f64 or f32.
     pub precision: String,
-    /// Whether the fluid flows: off or on.
-    pub flow: String,
+    /// Whether the fluid flows.
+    pub flow: Flow,
     /// What the particle's surface prefers: charge (of winding q), homeotropic, planar, uniform or table; none without a particle.
     #[serde(default)]
     pub pattern: String,
@@ -117,8 +151,8 @@ pub struct NematicRow {
     pub cpu_seconds: f64,
     /// Largest number of bytes held by fields, lists and solvers.
     pub peak_bytes: u64,
-    /// Warnings, separated by `;`.
-    pub warnings: String,
+    /// What is doubtful about it.
+    pub warnings: Warnings,
 }
 
 /// Order parameter above which a ring counts as buckled.
@@ -129,7 +163,8 @@ impl NematicRow {
     pub fn is_same_discharge(&self, other: &Self) -> bool {
         let settings = |r: &Self| {
             (
-                [&r.boundary, &r.flow, &r.pattern, &r.anchoring].map(String::clone),
+                [&r.boundary, &r.pattern, &r.anchoring].map(String::clone),
+                r.flow,
                 (r.q, r.radius, [r.a, r.b, r.c, r.elastic_constant]),
                 [r.rotational_mobility, r.flow_alignment, r.viscosity],
                 [

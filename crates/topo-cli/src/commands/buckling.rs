@@ -46,7 +46,9 @@ pub fn run(args: &BucklingArgs) -> Result<String, CliError> {
         let told = |row: &BucklingRow| {
             progress.done(&format!(
                 "q = {}, h = {}, {}",
-                row.q, row.spacing, row.boundary
+                row.q,
+                row.spacing,
+                row.boundary.name()
             ));
             let mut kept = kept.lock().unwrap_or_else(PoisonError::into_inner);
             kept.push(row.clone());
@@ -108,7 +110,7 @@ fn table(rows: &[BucklingRow]) -> String {
         });
         text += &format!(
             "| {} | {} | {} | {:e} |{}\n",
-            setting.boundary,
+            setting.boundary.name(),
             setting.spacing,
             setting.seed,
             setting.tolerance,
@@ -134,14 +136,15 @@ fn cell(row: &BucklingRow) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use topo_nematic::{Boundary, ChargeStop};
 
-    fn row(radius: f64, q: u32, boundary: &str, order: f64) -> BucklingRow {
+    fn row(radius: f64, q: u32, boundary: Boundary, order: f64) -> BucklingRow {
         BucklingRow {
             results: 6,
             radius,
             thickness: 4.0 * radius,
             q,
-            boundary: boundary.to_owned(),
+            boundary,
             spacing: 1.5,
             nodes: 6.3,
             seed: 0.05,
@@ -151,7 +154,7 @@ mod tests {
             ring_amplitude: None,
             eigenvalue: Some(0.25),
             state: None,
-            stop: "converged".to_owned(),
+            stop: ChargeStop::Converged,
             steps: 500,
             cpu_seconds: 2.0,
         }
@@ -160,10 +163,10 @@ mod tests {
     #[test]
     fn a_line_a_setting_and_a_column_a_charge() {
         let rows = [
-            row(15.0, 9, "cut-link", 1e-6),
-            row(15.0, 10, "cut-link", 0.0301),
-            row(15.0, 10, "node-mask", 0.05),
-            row(25.0, 6, "cut-link", 0.033),
+            row(15.0, 9, Boundary::CutLink, 1e-6),
+            row(15.0, 10, Boundary::CutLink, 0.0301),
+            row(15.0, 10, Boundary::NodeMask, 0.05),
+            row(25.0, 6, Boundary::CutLink, 0.033),
         ];
         let text = text(&rows);
         let lines: Vec<&str> = text.lines().filter(|l| l.starts_with('|')).collect();

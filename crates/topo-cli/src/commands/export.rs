@@ -1,10 +1,12 @@
 //! `topo export CASE`: files for ParaView, PyVista, numpy and nemaktis.
 
+use crate::batteries::Batteries;
 use crate::cli::{ExportArgs, ExportFormat};
 use crate::error::CliError;
 use topo_view::export::{self, Wanted};
 
-pub fn run(args: &ExportArgs) -> Result<(), CliError> {
+/// Writes the files of a case of one of the batteries.
+pub fn run(args: &ExportArgs, batteries: &Batteries<'_>) -> Result<(), CliError> {
     if !(args.micrometres > 0.0 && args.micrometres <= 1e6) {
         return Err(CliError::Argument {
             key: "--micrometres",
@@ -21,7 +23,7 @@ pub fn run(args: &ExportArgs) -> Result<(), CliError> {
         nemaktis: any(&[ExportFormat::Nemaktis]).then_some(args.micrometres),
     };
     let folder = args.to.clone().unwrap_or_else(|| args.case.join("export"));
-    let made = export::write(&args.case, &folder, &wanted)?;
+    let made = export::write(&args.case, &folder, &wanted, batteries)?;
     for note in &made.notes {
         say!("note: {note}");
     }

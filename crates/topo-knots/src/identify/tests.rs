@@ -2,6 +2,8 @@
 
 use super::*;
 use crate::{Chirality, closed_braid};
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
 
 fn braid(word: &[i32]) -> Vec<V> {
     closed_braid(word).expect("a knot").into_vertices()
@@ -350,13 +352,10 @@ fn words_of_sixty_letters_get_no_wrong_name() {
     let table = KnotTable::builtin();
     let mut n_knots = 0;
     for seed in 1..40_u64 {
-        let mut state = seed;
+        let mut rng = Pcg64::seed_from_u64(seed);
         let mut letter = || {
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1);
             // Alternating, so that nothing cancels; words on three strands, as an even number of letters closes no four to a knot.
-            if state >> 63 == 1 { -2 } else { 1 }
+            if rng.random() { -2 } else { 1 }
         };
         let word: Vec<i32> = (0..60).map(|_| letter()).collect();
         let Ok(curve) = closed_braid(&word) else {

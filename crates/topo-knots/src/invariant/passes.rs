@@ -1,5 +1,7 @@
 //! Pass moves: a stretch of strand that runs above all else, or below, is laid anew along the way with the fewest crossings.
 
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
 use std::collections::VecDeque;
 
 use super::diagram::{Diagram, Visit};
@@ -24,23 +26,23 @@ impl Diagram {
     /// Shuffles the diagram by pass moves that keep its number of crossings, `n_tries` times, and simplifies it after each, until no
     /// more than `enough` crossings are left.
     pub fn shuffle(&mut self, enough: usize, n_tries: usize) {
-        let mut state = 1;
+        let mut rng = Pcg64::seed_from_u64(1);
         for _ in 0..n_tries {
             if self.n_crossings() <= enough || self.n_crossings() > MOST_CROSSINGS {
                 return;
             }
-            self.pass(Some(&mut state));
+            self.pass(Some(&mut rng));
             self.simplify();
         }
     }
 
     /// Lays one run anew: the first that gets shorter or, with the state of a generator of random numbers, any that gets no longer.
-    fn pass(&mut self, mut random: Option<&mut u64>) -> bool {
+    fn pass(&mut self, mut random: Option<&mut Pcg64>) -> bool {
         let n = self.visits.len();
         let begins = |k: &usize| self.visits[*k].over != self.visits[(*k + n - 1) % n].over;
         let mut starts: Vec<usize> = (0..n).filter(begins).collect();
-        if let Some(state) = random.as_deref_mut() {
-            let by = next(state) as usize % starts.len().max(1);
+        if let Some(rng) = random.as_deref_mut() {
+            let by = rng.random_range(0..starts.len().max(1));
             starts.rotate_left(by);
             starts.truncate(1);
         }
@@ -155,7 +157,7 @@ impl FaceGraph {
         start: usize,
         length: usize,
         most: usize,
-        mut random: Option<&mut u64>,
+        mut random: Option<&mut Pcg64>,
     ) -> Option<Vec<Step>> {
         let (before, after) = ((start + n - 1) % n, (start + length - 1) % n);
         let is_of_run = |edge: usize| (edge + n - before) % n <= length;
@@ -173,7 +175,7 @@ impl FaceGraph {
             let edges = &self.edges[face];
             let turn = random
                 .as_deref_mut()
-                .map_or(0, |state| next(state) as usize);
+                .map_or(0, |rng| rng.random_range(0..edges.len().max(1)));
             for k in 0..edges.len() {
                 let edge = edges[(k + turn) % edges.len()];
                 let [left, right] = self.sides[edge];
@@ -210,14 +212,6 @@ fn trace(
     }
     way.reverse();
     way
-}
-
-/// The next of a sequence of random numbers.
-fn next(state: &mut u64) -> u64 {
-    *state = state
-        .wrapping_mul(6_364_136_223_846_793_005)
-        .wrapping_add(1_442_695_040_888_963_407);
-    *state >> 33
 }
 
 #[cfg(test)]

@@ -8,7 +8,7 @@ use super::identity::settings_of;
 use super::scene::{ElasticScene, OwnKnots};
 use crate::preset::Preset;
 use crate::sweep::{CaseName, Row, value};
-use topo_analysis::SweepRow;
+use topo_analysis::{SweepRow, Warnings};
 
 impl ElasticScene {
     /// Name of a case's folder, such as `3_1_twist+0.00_shrunk_n200`: of no other case, whatever the scene.
@@ -93,7 +93,7 @@ impl Row for SweepRow {
         self.cpu_seconds
     }
 
-    fn warnings(&self) -> &str {
+    fn warnings(&self) -> &Warnings {
         &self.warnings
     }
 

@@ -13,10 +13,7 @@ use super::record::{MadeCase, write_case};
 use crate::LabError;
 use crate::folder::Outcome;
 use crate::sweep::Place;
-use crate::warnings::push_warning;
-use topo_analysis::SweepRow;
-use topo_analysis::Timeline;
-use topo_analysis::{DischargeTimes, ELASTIC_SHARES};
+use topo_analysis::{DischargeTimes, ELASTIC_SHARES, SweepRow, Timeline, Warning, Warnings};
 
 /// Elastic parts of the energy, without contact.
 pub(crate) const ELASTIC: [&str; 3] = ["bend", "twist", "stretch"];
@@ -223,21 +220,18 @@ fn timeline(job: &CaseJob<'_>, discharge: &Discharge) -> Result<Timeline, LabErr
     })
 }
 
-fn phase_warnings(phase: &str, report: &PhaseReport, warnings: &mut String) {
+fn phase_warnings(phase: &str, report: &PhaseReport, warnings: &mut Warnings) {
     if !report.stop.is_success() {
-        push_warning(warnings, &format!("{phase} stopped: {}", report.stop));
+        warnings.push(format!("{phase} stopped: {}", report.stop));
     }
     if report.ledger_residual > 0.01 {
-        push_warning(
-            warnings,
-            &format!(
-                "{phase}: energy account open by {:.1} %",
-                100.0 * report.ledger_residual
-            ),
-        );
+        warnings.push(format!(
+            "{phase}: energy account open by {:.1} %",
+            100.0 * report.ledger_residual
+        ));
     }
     if report.min_distance_over_contact.is_some_and(|d| d < 0.75) {
-        push_warning(warnings, &format!("{phase}: strands overlap deeply"));
+        warnings.push(format!("{phase}: strands overlap deeply"));
     }
 }
 
@@ -260,21 +254,17 @@ fn charged_row(job: &CaseJob<'_>, charged: &ChargedRod) -> SweepRow {
     }
     phase_warnings("charge", report, &mut row.warnings);
     if case.rod.contact.is_none() {
-        push_warning(
-            &mut row.warnings,
-            "no contact: strands pass through each other",
-        );
+        row.warnings
+            .push("no contact: strands pass through each other");
     }
     match identify(charged.state().vertices(), table) {
         Ok(kind) if kind.fits(&case.knot) => {}
-        Ok(kind) => push_warning(
-            &mut row.warnings,
-            &format!("the charged rod is tied as {}", kind.label()),
-        ),
-        Err(error) => push_warning(
-            &mut row.warnings,
-            &format!("the charged rod has no knot type: {error}"),
-        ),
+        Ok(kind) => row.warnings.push(Warning::Retied {
+            found: kind.label(),
+        }),
+        Err(error) => row
+            .warnings
+            .push(format!("the charged rod has no knot type: {error}")),
     }
     row
 }
@@ -305,10 +295,8 @@ fn discharge_row(base: &SweepRow, run: &FollowedCut, cpu_seconds: f64) -> SweepR
         ..base.clone()
     };
     if report.stop == StopReason::ReachedTime {
-        push_warning(
-            &mut row.warnings,
-            "discharge not finished in the longest time followed",
-        );
+        row.warnings
+            .push("discharge not finished in the longest time followed");
     }
     phase_warnings("discharge", report, &mut row.warnings);
     row

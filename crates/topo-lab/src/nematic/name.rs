@@ -10,7 +10,7 @@ use super::case::NematicCase;
 use super::identity::hashed_accuracy;
 use super::scene::NematicScene;
 use crate::sweep::{CaseName, Row, value};
-use topo_analysis::NematicRow;
+use topo_analysis::{NematicRow, Warnings};
 
 /// Keys of a colloid that its name says in words of their own.
 const SAID: [&str; 5] = ["radius", "spacing", "pattern", "boundary", "particle"];
@@ -79,7 +79,7 @@ impl NematicScene {
             q: case.q,
             boundary: nematic.boundary.name().to_owned(),
             precision: self.accuracy.precision.name().to_owned(),
-            flow: if case.flow.is_some() { "on" } else { "off" }.to_owned(),
+            flow: case.flow.is_some().into(),
             pattern: if nematic.particle {
                 pattern_name(&nematic.pattern).to_owned()
             } else {
@@ -148,7 +148,7 @@ impl Row for NematicRow {
         self.cpu_seconds
     }
 
-    fn warnings(&self) -> &str {
+    fn warnings(&self) -> &Warnings {
         &self.warnings
     }
 

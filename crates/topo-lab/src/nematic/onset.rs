@@ -7,8 +7,8 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use topo_core::Interrupt;
 use topo_nematic::{
-    Boundary, ChargeSettings, MinimumState, NematicAccuracy, NematicBattery, NematicError,
-    NematicParameters, RunHooks, SurfacePattern,
+    Boundary, ChargeSettings, ChargeStop, MinimumState, NematicAccuracy, NematicBattery,
+    NematicError, NematicParameters, RunHooks, SurfacePattern,
 };
 
 use super::identity::RESULTS_VERSION;
@@ -79,8 +79,8 @@ pub struct BucklingRow {
     pub thickness: f64,
     /// Winding of the anchoring.
     pub q: u32,
-    /// How the particle's surface meets the grid: cut-link or node-mask.
-    pub boundary: String,
+    /// How the particle's surface meets the grid.
+    pub boundary: Boundary,
     /// Edge of a cell.
     pub spacing: f64,
     /// Spacings a wavelength of the pattern has on the equator.
@@ -100,7 +100,7 @@ pub struct BucklingRow {
     /// What it says: minimum, saddle or marginal.
     pub state: Option<MinimumState>,
     /// How the charge ended.
-    pub stop: String,
+    pub stop: ChargeStop,
     /// Steps.
     pub steps: u64,
     /// Processor seconds.
@@ -115,7 +115,7 @@ impl BucklingRow {
 
     /// Whether it was relaxed to the end.
     pub fn has_converged(&self) -> bool {
-        self.stop == "converged"
+        self.stop == ChargeStop::Converged
     }
 }
 
@@ -153,7 +153,7 @@ impl BucklingCase {
     fn is_of(&self, row: &BucklingRow) -> bool {
         row.results == RESULTS_VERSION
             && row.q == self.q
-            && row.boundary == self.boundary.name()
+            && row.boundary == self.boundary
             && [row.radius, row.spacing, row.seed, row.tolerance]
                 == [self.radius, self.spacing, self.seed, self.tolerance]
     }
@@ -193,7 +193,7 @@ impl BucklingCase {
             radius: self.radius,
             thickness,
             q: self.q,
-            boundary: self.boundary.name().to_owned(),
+            boundary: self.boundary,
             spacing: self.spacing,
             nodes: TAU * self.radius / (self.spacing * f64::from(self.q)),
             seed: self.seed,
@@ -205,7 +205,7 @@ impl BucklingCase {
                 .map(|r| r.amplitude()),
             eigenvalue: minimum.map(|m| m.lowest_eigenvalue / unit),
             state: minimum.map(|m| m.state),
-            stop: report.stop.to_owned(),
+            stop: report.stop,
             steps: report.n_steps,
             cpu_seconds: report.cpu_seconds,
         })
@@ -294,7 +294,7 @@ mod tests {
         };
         let first = buckling_study(&[case], &[], &never, &tell).unwrap();
         assert!(first[0].has_converged() && !first[0].is_buckled());
-        assert!((first[0].thickness, first[0].boundary.as_str()) == (20.0, "node-mask"));
+        assert!((first[0].thickness, first[0].boundary) == (20.0, Boundary::NodeMask));
         // marked, to be told from a row made anew
         let mut known = first.clone();
         known[0].f_charged = 1.0;

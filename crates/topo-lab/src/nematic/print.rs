@@ -30,7 +30,7 @@ pub(super) fn line(r: &NematicRow) -> String {
 /// What the discharge times of many windings tell, without flow and with it.
 pub(super) fn resonances(all: &[NematicRow]) -> Vec<String> {
     let mut lines = Vec::new();
-    for flow in ["off", "on"] {
+    for flow in [topo_analysis::Flow::Off, topo_analysis::Flow::On] {
         let rows: Vec<_> = all.iter().filter(|r| r.flow == flow).cloned().collect();
         if rows.len() > 2 {
             let found = nematic_resonance(&rows);

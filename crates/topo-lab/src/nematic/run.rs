@@ -1,7 +1,9 @@
 //! One case: charge a colloid, switch its anchoring, follow the discharge, and write a folder.
 
 use serde_json::json;
-use topo_analysis::{DischargeTimes, NEMATIC_SHARES, NematicRow, NematicSample, late_rate};
+use topo_analysis::{
+    DischargeTimes, NEMATIC_SHARES, NematicRow, NematicSample, Warnings, late_rate,
+};
 use topo_core::{FileError, StopReason, load_checkpoint, save_checkpoint};
 use topo_nematic::{
     ChargeReport, ChargedNematic, Discharge, DischargeSettings, FinalSource, FlowCoupling,
@@ -17,7 +19,6 @@ use crate::LabError;
 use crate::folder::{Outcome, forget_checkpoints, forget_file, make_folder};
 use crate::progress::Event;
 use crate::sweep::{About, Place, value};
-use crate::warnings::push_warning;
 
 /// Schema of the checkpoint of snapshots.
 const KEPT: &str = "nematic-snapshots/4";
@@ -213,43 +214,31 @@ impl CaseRun<'_> {
             ..self.scene.blank_row(self.case)
         };
         for text in battery.warnings() {
-            push_warning(&mut row.warnings, text);
+            row.warnings.push(text.as_str());
         }
         if !charge.is_converged() {
-            push_warning(
-                &mut row.warnings,
-                &format!(
-                    "charge not converged: {}, rms H {:.1e}",
-                    charge.stop, charge.rms_field
-                ),
-            );
+            row.warnings.push(format!(
+                "charge not converged: {}, rms H {:.1e}",
+                charge.stop, charge.rms_field
+            ));
         }
         if let Some(text) = stability_warning(charge) {
-            push_warning(&mut row.warnings, &text);
+            row.warnings.push(text);
         }
         if !discharge.stop.is_success() {
-            push_warning(
-                &mut row.warnings,
-                &format!("discharge stopped: {}", discharge.stop),
-            );
+            row.warnings
+                .push(format!("discharge stopped: {}", discharge.stop));
         }
-        for text in final_state_warnings(run) {
-            push_warning(&mut row.warnings, &text);
-        }
+        final_state_warnings(run, &mut row.warnings);
         if discharge.stop == StopReason::ReachedTime {
-            push_warning(
-                &mut row.warnings,
-                "discharge not finished in the longest time followed",
-            );
+            row.warnings
+                .push("discharge not finished in the longest time followed");
         }
         if discharge.ledger_residual > 0.01 {
-            push_warning(
-                &mut row.warnings,
-                &format!(
-                    "energy account open by {:.1} %",
-                    100.0 * discharge.ledger_residual
-                ),
-            );
+            row.warnings.push(format!(
+                "energy account open by {:.1} %",
+                100.0 * discharge.ledger_residual
+            ));
         }
         row
     }
@@ -310,11 +299,10 @@ fn failure(charged: &ChargedNematic, run: &Discharge) -> Option<String> {
 }
 
 /// What is to be said of the state that released energy counts down to.
-fn final_state_warnings(run: &Discharge) -> Vec<String> {
-    let mut warnings = Vec::new();
+fn final_state_warnings(run: &Discharge, warnings: &mut Warnings) {
     let end = &run.final_state;
     match run.stored {
-        None => warnings.push("nothing is stored: there are no discharge times".to_owned()),
+        None => warnings.push("nothing is stored: there are no discharge times"),
         Some(stored) if stored < 0.0 => warnings.push(format!(
             "the final state lies {:.4} L xi_N above the present one: there are no discharge times",
             -stored
@@ -323,17 +311,15 @@ fn final_state_warnings(run: &Discharge) -> Vec<String> {
             let last = run.record.curve.len().checked_sub(1);
             let left = last.map_or(0.0, |i| run.record.curve.stored_total(i) - end.energy);
             if left < -BELOW * stored {
-                warnings.push(format!(
-                    "the discharge ended {:.4} L xi_N below the state that its times count down to: it relaxed to another",
+                warnings.push(format!("the discharge ended {:.4} L xi_N below the state that its times count down to: it relaxed to another",
                     -left
                 ));
             }
         }
     }
     if end.source == FinalSource::Unconverged {
-        warnings.push("the final state did not converge: its energy is an upper bound".to_owned());
+        warnings.push("the final state did not converge: its energy is an upper bound");
     }
-    warnings
 }
 
 /// Share of the energy stored by which a discharge may end below its final state: beyond is not rounding.

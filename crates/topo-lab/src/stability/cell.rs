@@ -1,9 +1,29 @@
 //! One run of a map.
 
+use std::fmt;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use serde::{Deserialize, Serialize};
 use topo_core::{CpuClock, Interrupt};
+
+/// How a run of a map ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Ending {
+    /// It came to its end.
+    Converged,
+    /// It stopped with a reason.
+    Stopped,
+}
+
+impl fmt::Display for Ending {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::Converged => "converged",
+            Self::Stopped => "stopped",
+        })
+    }
+}
 
 /// One run of a map, as tables hold it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -16,8 +36,8 @@ pub struct StabilityRow {
     pub axis_y: String,
     /// Its value.
     pub y: String,
-    /// `converged` or `stopped`.
-    pub outcome: String,
+    /// How it ended.
+    pub outcome: Ending,
     /// Why it stopped; empty when it converged.
     pub reason: String,
     /// Processor seconds.
@@ -32,7 +52,7 @@ pub struct StabilityRow {
 impl StabilityRow {
     /// Whether it came to its end.
     pub fn has_converged(&self) -> bool {
-        self.outcome == "converged"
+        self.outcome == Ending::Converged
     }
 }
 
@@ -89,12 +109,10 @@ impl Cell {
             x: self.at[0].clone(),
             axis_y: self.axes[1].to_owned(),
             y: self.at[1].clone(),
-            outcome: if verdict.reason.is_none() {
-                "converged"
-            } else {
-                "stopped"
-            }
-            .to_owned(),
+            outcome: match verdict.reason {
+                None => Ending::Converged,
+                Some(_) => Ending::Stopped,
+            },
             reason: verdict.reason.unwrap_or_default(),
             seconds: clock.seconds(),
             violations: verdict.violations,

@@ -83,7 +83,7 @@ impl<E: Experiment> Swept for Finished<'_, E> {
         let mut lines = vec![self.experiment.header()];
         for row in &self.report.rows {
             lines.push(self.experiment.line(row));
-            let warnings = row.warnings().split(';').filter(|w| !w.is_empty());
+            let warnings = row.warnings().iter();
             lines.extend(warnings.map(|warning| format!("       warning: {warning}")));
         }
         lines.extend(self.experiment.findings(&self.report.rows));

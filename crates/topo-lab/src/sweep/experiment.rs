@@ -12,6 +12,7 @@ use crate::error::LabError;
 use crate::folder::Outcome;
 use crate::progress::{Event, SweepSettings};
 use crate::wish::{ErrorRow, Grant};
+use topo_analysis::Warnings;
 
 /// What a battery says so that its scenes can be swept, and their tables printed.
 ///
@@ -144,8 +145,8 @@ pub trait Row: Serialize + DeserializeOwned + Clone + Send + Sync {
     /// Processor seconds that it took.
     fn cpu_seconds(&self) -> f64;
 
-    /// Its warnings, separated by `;`.
-    fn warnings(&self) -> &str;
+    /// What is doubtful about it.
+    fn warnings(&self) -> &Warnings;
 
     /// The row with the settings of another: finished cases of earlier programs may lack some.
     fn with_settings_of(self, _blank: &Self) -> Self {

@@ -148,7 +148,7 @@ mod tests {
             q,
             spacing,
             t999,
-            flow: "off".to_owned(),
+            flow: topo_analysis::Flow::Off,
             ..NematicRow::default()
         };
         // second order in the spacing, on grids fitted to the cell

@@ -6,7 +6,7 @@ use topo_core::{InvalidValue, finite, in_range, positive};
 use super::NematicBattery;
 use super::charging::Charging;
 use super::hooks::RunHooks;
-use super::record::ChargeReport;
+use super::record::{ChargeReport, ChargeStop};
 use crate::kernel::run::Kernel;
 use crate::memory::ByteAccount;
 use crate::{
@@ -115,7 +115,7 @@ impl NematicBattery {
         self.check_grid(state)?;
         let kernel = self.kernel::<f64>(&self.charged_surface(), self.accuracy.threads);
         let report = ChargeReport {
-            stop: "adopted",
+            stop: ChargeStop::Adopted,
             seed: 0.0,
             n_steps: 0,
             rms_field: kernel.rms_field_of(state),

@@ -9,7 +9,7 @@ use super::NematicBattery;
 use super::charge::ChargeSettings;
 use super::hooks::{Phase, Progress, RunHooks};
 use super::minimum::Check;
-use super::record::ChargeReport;
+use super::record::{ChargeReport, ChargeStop};
 use crate::MinimumState;
 use crate::kernel::run::Kernel;
 use crate::memory::ByteAccount;
@@ -269,9 +269,9 @@ impl<'a, 'h> Charging<'a, 'h> {
             return Err(NematicError::Diverged { step: 0 });
         };
         let stop = match end {
-            End::Interrupted => "interrupted",
-            _ if at.has_reached_limit => "step-limit",
-            _ => "converged",
+            End::Interrupted => ChargeStop::Interrupted,
+            _ if at.has_reached_limit => ChargeStop::StepLimit,
+            _ => ChargeStop::Converged,
         };
         let report = ChargeReport {
             stop,

@@ -1,5 +1,7 @@
 //! What a phase of a run leaves behind.
 
+use std::fmt;
+
 use serde::{Deserialize, Serialize};
 use topo_core::{Counters, DischargeCurve, Ledger, RejectionCounts, StopReason};
 
@@ -10,11 +12,36 @@ use crate::{EnergyParts, FlowCounters, OrderParameter, Ring};
 /// Channels by which energy is dissipated, as tables name them.
 pub(crate) const CHANNELS: [&str; 2] = ["rotation", "viscous"];
 
+/// Why a charge ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ChargeStop {
+    /// The molecular field is as small as asked.
+    Converged,
+    /// The steps allowed were taken.
+    StepLimit,
+    /// It was asked to stop.
+    Interrupted,
+    /// It was not relaxed: the state was made elsewhere.
+    Adopted,
+}
+
+impl fmt::Display for ChargeStop {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::Converged => "converged",
+            Self::StepLimit => "step-limit",
+            Self::Interrupted => "interrupted",
+            Self::Adopted => "adopted",
+        })
+    }
+}
+
 /// How a charge went.
 #[derive(Debug, Clone, Serialize)]
 pub struct ChargeReport {
-    /// Why it ended: "converged", "step-limit", "interrupted", or "adopted" for a state made elsewhere.
-    pub stop: &'static str,
+    /// Why it ended.
+    pub stop: ChargeStop,
     /// Tilt of the start field that led to the state kept.
     pub seed: f64,
     /// Steps of the relaxation, over all start fields.
@@ -37,7 +64,7 @@ pub struct ChargeReport {
 impl ChargeReport {
     /// Whether it converged.
     pub fn is_converged(&self) -> bool {
-        self.stop == "converged"
+        self.stop == ChargeStop::Converged
     }
 }
 

@@ -13,16 +13,8 @@ use crate::material::Material;
 use crate::particle::Particle;
 use crate::stokes::{Drive, MacField, StokesError};
 
-/// Numbers between -1 and 1.
 fn noise(n: usize, seed: u64) -> Vec<f64> {
-    let mut state = seed;
-    let next = || {
-        state = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (state >> 40) as f64 / 8.4e6 - 1.0
-    };
-    std::iter::repeat_with(next).take(n).collect()
+    crate::noise::noise(seed).take(n).collect()
 }
 
 fn place(grid: &Grid, n: usize) -> [usize; 3] {

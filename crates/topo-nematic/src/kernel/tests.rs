@@ -10,14 +10,9 @@ use crate::{Faces, Grid, Material, Particle};
 
 /// A reproducible field without any symmetry.
 pub(crate) fn rough<T: Real>(n: usize) -> Vec<T> {
-    let mut state = 12345_u64;
-    (0..5 * n)
-        .map(|_| {
-            state = state
-                .wrapping_mul(6364136223846793005)
-                .wrapping_add(1442695040888963407);
-            T::of(((state >> 33) as f64 / f64::from(1_u32 << 31) - 0.5) * 0.6)
-        })
+    crate::noise::noise(12345)
+        .take(5 * n)
+        .map(|x| T::of(0.3 * x))
         .collect()
 }
 

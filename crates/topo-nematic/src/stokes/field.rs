@@ -176,16 +176,16 @@ mod tests {
     #[test]
     fn divergence_and_pressure_gradient_are_adjoint() {
         let grid = Grid::new([4, 5, 6], 1.0, [Faces::Periodic, Faces::Wall, Faces::Wall]).unwrap();
-        let noise = |n: usize| ((n * 2_654_435_761) % 1000) as f64 / 500.0 - 1.0;
+        let mut noise = crate::noise::noise(77);
         let mut u = MacField::zeros(&grid);
-        let pressure: Vec<f64> = (0..grid.n_cells()).map(|n| noise(n + 77)).collect();
+        let pressure: Vec<f64> = noise.by_ref().take(grid.n_cells()).collect();
         let (mut outflow, mut work) = (0.0, 0.0);
         for axis in 0..3 {
             for (n, x) in u.component_mut(axis).iter_mut().enumerate() {
                 let ijk = [n % 4, n / 4 % 5, n / 20];
                 let wall = grid.faces()[axis] == Faces::Wall && ijk[axis] == 0;
                 if !wall {
-                    *x = noise(n + 1000 * axis);
+                    *x = noise.next().unwrap();
                 }
                 let mut before = ijk;
                 before[axis] = (ijk[axis] + grid.cells()[axis] - 1) % grid.cells()[axis];

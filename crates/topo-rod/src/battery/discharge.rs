@@ -134,15 +134,15 @@ impl CutRod {
                 Scheduled::new(Schedule::always(), &mut see_step),
                 Scheduled::new(outputs, &mut see_sample),
             ];
+            let mut has_parted = false;
             let mut stop = simulation.run(until, &mut observers, &mut |s| {
                 if elastic(s) <= goal {
-                    Some("released".to_owned())
-                } else {
-                    CutRod::tips_have_parted(s.state, tube.contact_diameter, window)
-                        .then(|| PARTED.to_owned())
+                    return Some("released".to_owned());
                 }
+                has_parted = CutRod::tips_have_parted(s.state, tube.contact_diameter, window);
+                has_parted.then(|| "tips parted".to_owned())
             });
-            if stop == StopReason::Condition(PARTED.to_owned()) {
+            if has_parted {
                 parted = Some(simulation.time() / scales.time);
                 simulation.modify(|model, _| model.set_cyclic(false));
                 stop = simulation.run(until, &mut observers, &mut |s| {
@@ -163,6 +163,3 @@ impl CutRod {
         })
     }
 }
-
-/// The condition that ends the first stretch of a discharge.
-const PARTED: &str = "tips parted";

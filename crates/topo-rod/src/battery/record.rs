@@ -1,6 +1,6 @@
 //! What a phase of a run leaves behind: energies at every step, states at output times, and a report.
 
-use std::f64::consts::PI;
+use topo_core::{reference_energy, reference_time};
 
 use serde::Serialize;
 use topo_core::{Counters, DischargeCurve, Ledger, RejectionCounts, Sample, StopReason};
@@ -80,7 +80,7 @@ pub struct RunRecord {
     pub report: PhaseReport,
 }
 
-/// Reduced to reported units: T_0 = 2 L for times, E_0 = A-specific L/π for energies per area.
+/// The units in which times and energies are reported, T_0 and E_0 per cross section.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Scales {
     pub time: f64,
@@ -90,8 +90,8 @@ pub(crate) struct Scales {
 impl Scales {
     pub(crate) fn of(state: &RodState) -> Self {
         Self {
-            time: 2.0 * state.length(),
-            energy: state.length() / PI,
+            time: reference_time(state.length()),
+            energy: reference_energy(state.length()),
         }
     }
 }

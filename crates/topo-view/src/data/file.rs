@@ -3,6 +3,7 @@
 use crate::error::ViewError;
 use serde::de::DeserializeOwned;
 use std::path::{Path, PathBuf};
+use topo_core::{FileError, write_atomic_bytes};
 
 /// Reads a CSV file with a header.
 pub fn read_csv<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>, ViewError> {
@@ -31,15 +32,10 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), ViewError> {
     };
     let folder = path.parent().unwrap_or(Path::new("."));
     std::fs::create_dir_all(folder).map_err(fail)?;
-    let mut builder = tempfile::Builder::new();
-    // Results are for others to read, unlike most temporary files.
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o644));
-    let mut file = builder.tempfile_in(folder).map_err(fail)?;
-    std::io::Write::write_all(&mut file, bytes).map_err(fail)?;
-    file.as_file().sync_all().map_err(fail)?;
-    file.persist(path).map_err(|e| fail(e.error))?;
-    Ok(())
+    write_atomic_bytes(path, bytes).map_err(|e| match e {
+        FileError::Io { source, .. } => fail(source),
+        other => fail(std::io::Error::other(other.to_string())),
+    })
 }
 
 #[cfg(test)]

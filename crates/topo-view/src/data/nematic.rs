@@ -33,7 +33,7 @@ impl NematicSweep {
         };
         all.retain(|r| key(r) == main);
         all.sort_by_key(|r| r.q);
-        let (flowing, still): (Vec<_>, Vec<_>) = all.into_iter().partition(|r| r.flow == "on");
+        let (flowing, still): (Vec<_>, Vec<_>) = all.into_iter().partition(|r| r.flow.is_on());
         let rows = if still.is_empty() {
             flowing.clone()
         } else {
@@ -53,48 +53,58 @@ impl NematicSweep {
 
     /// Rings of a case at the times kept; the charged state first, its time `None`.
     pub fn rings(&self, row: &NematicRow) -> Result<Vec<DefectLine>, ViewError> {
-        let mut lines: Vec<DefectLine> = Vec::new();
-        let mut last = None;
-        for p in read_csv::<LinePoint>(&self.case(row).join("ring.csv"))? {
-            let id = (p.time.map(f64::to_bits), p.line);
-            if last != Some(id) {
-                last = Some(id);
-                lines.push(DefectLine {
-                    time: p.time,
-                    closed: p.closed,
-                    points: Vec::new(),
-                    angles: Vec::new(),
-                });
-            }
-            if let Some(line) = lines.last_mut() {
-                line.points.push(Vector3::new(p.x, p.y, p.z));
-                line.angles.push(p.angle);
-            }
-        }
-        Ok(lines)
+        rings(&self.case(row))
     }
 
     /// Slices of a case at the times kept; the charged state first, its time `None`.
     pub fn slices(&self, row: &NematicRow) -> Result<Vec<Slice>, ViewError> {
-        let mut slices: Vec<Slice> = Vec::new();
-        for p in read_csv::<SlicePoint>(&self.case(row).join("slices.csv"))? {
-            if slices.last().is_none_or(|s| s.time != p.time) {
-                slices.push(Slice {
-                    time: p.time,
-                    points: Vec::new(),
-                });
-            }
-            if let Some(slice) = slices.last_mut() {
-                slice.points.push(p);
-            }
-        }
-        Ok(slices)
+        slices(&self.case(row))
     }
 
     /// Time series of a case.
     pub fn series(&self, row: &NematicRow) -> Result<Vec<NematicSample>, ViewError> {
         read_csv(&self.case(row).join("series.csv"))
     }
+}
+
+/// Rings in the folder of a case at the times kept; the charged state first, its time `None`.
+pub fn rings(case: &Path) -> Result<Vec<DefectLine>, ViewError> {
+    let mut lines: Vec<DefectLine> = Vec::new();
+    let mut last = None;
+    for p in read_csv::<LinePoint>(&case.join("ring.csv"))? {
+        let id = (p.time.map(f64::to_bits), p.line);
+        if last != Some(id) {
+            last = Some(id);
+            lines.push(DefectLine {
+                time: p.time,
+                closed: p.closed,
+                points: Vec::new(),
+                angles: Vec::new(),
+            });
+        }
+        if let Some(line) = lines.last_mut() {
+            line.points.push(Vector3::new(p.x, p.y, p.z));
+            line.angles.push(p.angle);
+        }
+    }
+    Ok(lines)
+}
+
+/// Slices in the folder of a case at the times kept; the charged state first, its time `None`.
+pub fn slices(case: &Path) -> Result<Vec<Slice>, ViewError> {
+    let mut slices: Vec<Slice> = Vec::new();
+    for p in read_csv::<SlicePoint>(&case.join("slices.csv"))? {
+        if slices.last().is_none_or(|s| s.time != p.time) {
+            slices.push(Slice {
+                time: p.time,
+                points: Vec::new(),
+            });
+        }
+        if let Some(slice) = slices.last_mut() {
+            slice.points.push(p);
+        }
+    }
+    Ok(slices)
 }
 
 /// A defect line, relative to the particle's centre.

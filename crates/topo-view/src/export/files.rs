@@ -20,23 +20,27 @@ pub struct Wanted {
 }
 
 /// The files of an export, noted as they are made.
-pub(super) struct Files<'a> {
+#[derive(Debug)]
+pub struct Files<'a> {
     pub(super) folder: &'a Path,
     pub(super) made: Vec<PathBuf>,
     /// What the user should know.
-    pub(super) notes: Vec<String>,
+    pub notes: Vec<String>,
 }
 
 impl Files<'_> {
     /// Place of a file, noted.
-    pub(super) fn place(&mut self, name: &str) -> PathBuf {
+    pub fn place(&mut self, name: &str) -> PathBuf {
         let path = self.folder.join(name);
         self.made.push(path.clone());
         path
     }
 
     /// Writes the times of files, if there are any.
-    pub(super) fn series(&mut self, what: &str, files: &[(f64, String)]) -> Result<(), ViewError> {
+    ///
+    /// # Errors
+    /// A file that cannot be written.
+    pub fn series(&mut self, what: &str, files: &[(f64, String)]) -> Result<(), ViewError> {
         if files.is_empty() {
             return Ok(());
         }
@@ -60,7 +64,7 @@ pub(super) fn damaged(case: &Path, name: &str, reason: &str) -> ViewError {
     )
 }
 
-pub(super) fn refusal(path: &Path, reason: &str) -> ViewError {
+pub(crate) fn refusal(path: &Path, reason: &str) -> ViewError {
     ViewError::Case {
         path: path.to_owned(),
         reason: reason.to_owned(),

@@ -4,16 +4,18 @@ mod opened;
 
 use super::about::About;
 use super::npz::Archive;
-use super::{Wanted, vtk, write};
+use super::{Made, Wanted, vtk};
 use crate::error::ViewError;
 use crate::outside::Outside;
+use crate::shown::Shown;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use topo_analysis::write_table;
 use topo_knots::KnotTable;
 use topo_lab::{
-    ElasticScene, NematicScene, RESULTS_VERSION, SweepSettings, run_nematic_sweep, run_sweep,
+    Colloid, Elastic, ElasticScene, NematicScene, RESULTS_VERSION, SweepSettings,
+    run_nematic_sweep, run_sweep,
 };
 
 /// Shorter than its ropelength, so that its tube is thinner than 2h.
@@ -29,6 +31,11 @@ const ALL: Wanted = Wanted {
     npz: true,
     nemaktis: Some(0.01),
 };
+
+fn write(case: &Path, folder: &Path, wanted: &Wanted) -> Result<Made, ViewError> {
+    let batteries: [&dyn Shown; 2] = [&Elastic, &Colloid];
+    super::write(case, folder, wanted, &batteries)
+}
 
 /// The folder of the only case below another, wherever it lies.
 fn only_case(out: &Path) -> PathBuf {
@@ -215,7 +222,11 @@ fn folders_that_are_no_case_are_refused() {
     refusal_of(&mark, &["no such folder"]);
     refusal_of(dir.path(), &["cases (1)", "such as", "case"]);
     say("{\"schema\":\"other/1\"}");
-    refusal(&["other/1"]);
+    refusal(&[
+        "other/1",
+        "a knotted fibre (topo-elastic-case/1)",
+        "a colloid (topo-nematic-case/1)",
+    ]);
     for schema in ["topo-elastic-case/1", "topo-nematic-case/1"] {
         say(&format!("{{\"schema\":\"{schema}\"}}"));
         refusal(&["results version null"]);

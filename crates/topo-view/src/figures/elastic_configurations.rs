@@ -2,14 +2,13 @@
 
 use super::figure::{Context, Drawn, Figure, face};
 use super::series::{Table, bounds, root_ticks};
+use super::shapes::{Shape, high_density, turn_alike, widest};
 use crate::data::{Curve, Sweep};
 use crate::error::ViewError;
-use crate::plot::canvas::{Canvas, tube_png};
+use crate::plot::canvas::Canvas;
 use crate::plot::color::Scale;
 use crate::plot::style::Style;
-use crate::plot::tube::Tube;
-use crate::plot::{camera, text};
-use nalgebra::{Matrix3, Rotation3, Vector3};
+use crate::plot::text;
 use rayon::prelude::*;
 
 pub(super) const FIGURE: Figure = Figure {
@@ -33,8 +32,9 @@ fn draw(context: &Context) -> Result<Drawn, ViewError> {
         .map(|knot| row(context, &sweep, knot))
         .collect::<Result<Vec<_>, _>>()?;
     let states: Vec<&State> = rows.iter().flatten().collect();
-    let scale = Scale::viridis_root(high_density(&states));
-    let unit = (CELL[0].min(CELL[1]) - 1.0) / widest(&states);
+    let shapes = || states.iter().map(|s| &s.shape);
+    let scale = Scale::viridis_root(high_density(shapes()));
+    let unit = (CELL[0].min(CELL[1]) - 1.0) / widest(shapes());
 
     let (left, top) = (34.0, 34.0);
     // A few twists still leave room for the note at the foot.
@@ -60,18 +60,8 @@ fn draw(context: &Context) -> Result<Drawn, ViewError> {
     let images = states
         .par_iter()
         .map(|s| {
-            let [x0, y0, x1, y1] = camera::extent(&s.view);
-            let tube = Tube::new(&s.view, &s.curve.density, true, 1.0, &scale);
-            let tube = tube.ok_or_else(|| ViewError::Drawing {
-                reason: format!("{} at {} is no curve", s.knot, s.twist),
-            })?;
-            tube_png(
-                CELL,
-                [(x0 + x1) / 2.0, (y0 + y1) / 2.0],
-                unit,
-                canvas.zoom(),
-                &tube,
-            )
+            let name = format!("{} at {}", s.knot, s.twist);
+            s.shape.image(&name, CELL, unit, canvas.zoom(), &scale)
         })
         .collect::<Result<Vec<_>, _>>()?;
     let mut table = Table::new("knot,twist,s,x,y,z,energy_density");
@@ -83,13 +73,8 @@ fn draw(context: &Context) -> Result<Drawn, ViewError> {
         let line = knots.iter().position(|k| *k == state.knot).unwrap_or(0);
         let at = [left + CELL[0] * column as f64, top + CELL[1] * line as f64];
         canvas.image(at, CELL, image);
-        for ((s, p), e) in state
-            .curve
-            .s
-            .iter()
-            .zip(&state.curve.points)
-            .zip(&state.curve.density)
-        {
+        let curve = &state.shape.curve;
+        for ((s, p), e) in curve.s.iter().zip(&curve.points).zip(&curve.density) {
             table.row(&[&state.knot], &[state.twist, *s, p.x, p.y, p.z, *e]);
         }
     }
@@ -123,90 +108,35 @@ fn draw(context: &Context) -> Result<Drawn, ViewError> {
 struct State {
     knot: String,
     twist: f64,
-    curve: Curve,
-    view: Vec<Vector3<f64>>,
+    shape: Shape,
 }
 
 /// The states of a knot, each turned like its neighbour nearer to zero twist.
 fn row(context: &Context, sweep: &Sweep, knot: &str) -> Result<Vec<State>, ViewError> {
-    let mut states = Vec::new();
+    let (mut twists, mut shapes) = (Vec::new(), Vec::new());
     for case in sweep.of(knot) {
-        let path = context
-            .results
-            .join("elastic")
-            .join(case.folder())
-            .join("charged.csv");
-        let curve = Curve::read(&path)?;
-        states.push(State {
-            knot: knot.to_owned(),
-            twist: case.first().twist,
-            curve,
-            view: Vec::new(),
-        });
+        let folder = context.results.join("elastic").join(case.folder());
+        shapes.push(Shape::new(Curve::read(&folder.join("charged.csv"))?));
+        twists.push(case.first().twist);
     }
-    let mut order: Vec<usize> = (0..states.len()).collect();
-    order.sort_by(|&a, &b| states[a].twist.abs().total_cmp(&states[b].twist.abs()));
-    for (k, &i) in order.iter().enumerate() {
-        let done = order[..k].iter();
-        let near = done.min_by(|&&a, &&b| {
-            let gap = |j: usize| (states[j].twist - states[i].twist).abs();
-            gap(a).total_cmp(&gap(b))
-        });
-        let points = &states[i].curve.points;
-        let turn = near.and_then(|&j| camera::aligned(points, &states[j].view));
-        let view = camera::view(points, &turn.unwrap_or_else(|| camera::flattest(points)));
-        states[i].view = camera::flattened(view);
-    }
-    square_up(&mut states);
-    Ok(states)
-}
-
-/// Turns a row in the plane of the page so that its widest picture is as small as can be.
-fn square_up(states: &mut [State]) {
-    let turned = |degrees: usize| -> Matrix3<f64> {
-        *Rotation3::from_axis_angle(&Vector3::z_axis(), (degrees as f64).to_radians()).matrix()
+    let mut order: Vec<usize> = (0..shapes.len()).collect();
+    order.sort_by(|&a, &b| twists[a].abs().total_cmp(&twists[b].abs()));
+    turn_alike(&mut shapes, &order, |j, i| (twists[j] - twists[i]).abs());
+    let state = |(twist, shape)| State {
+        knot: knot.to_owned(),
+        twist,
+        shape,
     };
-    let side = |degrees: usize| {
-        let turn = turned(degrees);
-        let sides = states.iter().map(|s| {
-            let [x0, y0, x1, y1] = camera::extent(&camera::view(&s.view, &turn));
-            (x1 - x0).max(y1 - y0)
-        });
-        sides.fold(0.0_f64, f64::max)
-    };
-    let best = (0..180)
-        .step_by(3)
-        .min_by(|&a, &b| side(a).total_cmp(&side(b)))
-        .unwrap_or(0);
-    for state in states.iter_mut() {
-        state.view = camera::view(&state.view, &turned(best));
-    }
-}
-
-fn widest(states: &[&State]) -> f64 {
-    let sides = states.iter().map(|s| {
-        let [x0, y0, x1, y1] = camera::extent(&s.view);
-        (x1 - x0).max(y1 - y0) + 2.0
-    });
-    sides.fold(4.0, f64::max)
-}
-
-/// Density that all but 1 % of the vertices stay below: a few hot spots must not darken all.
-fn high_density(states: &[&State]) -> f64 {
-    let mut all: Vec<f64> = states
-        .iter()
-        .flat_map(|s| s.curve.density.iter().copied())
-        .collect();
-    all.sort_by(f64::total_cmp);
-    all.get((0.99 * all.len() as f64) as usize)
-        .or(all.last())
-        .copied()
-        .unwrap_or(1.0)
+    Ok(twists.into_iter().zip(shapes).map(state).collect())
 }
 
 fn finding(sweep: &Sweep, states: &[&State]) -> String {
     let energies = bounds(sweep.cases.iter().map(|c| c.first().energy));
-    let densities = bounds(states.iter().flat_map(|s| s.curve.density.iter().copied()));
+    let densities = bounds(
+        states
+            .iter()
+            .flat_map(|s| s.shape.curve.density.iter().copied()),
+    );
     format!(
         "{} states. Stored energy {} to {} E₀; energy density {} to {} E_b h².",
         states.len(),

@@ -12,6 +12,7 @@ use crate::plot::panel::{Axis, Panel};
 use crate::plot::solids::{Solids, view};
 use crate::plot::style::Style;
 use nalgebra::Vector3;
+use topo_analysis::Flow;
 use topo_analysis::buckling;
 use topo_lab::Preset;
 
@@ -138,8 +139,8 @@ pub fn mark_onset(sweep: &NematicSweep, canvas: &mut Canvas, panel: &Panel) {
 /// Foot of the nematic figures: quality, and where the runs depart from the published ones.
 pub fn face(sweep: &NematicSweep, quality: Preset) -> Vec<String> {
     let first = &sweep.rows[0];
-    let flow = match (first.flow.as_str(), sweep.flowing.is_empty()) {
-        ("on", _) => "with flow".to_owned(),
+    let flow = match (first.flow, sweep.flowing.is_empty()) {
+        (Flow::On, _) => "with flow".to_owned(),
         (_, true) => "without flow".to_owned(),
         _ if sweep.flowing.len() == sweep.rows.len() => {
             "curves and rates without flow, each *q* run with it as well".to_owned()

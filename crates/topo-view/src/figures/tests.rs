@@ -67,7 +67,7 @@ fn every_figure_is_drawn_with_its_files_and_told_in_the_gallery() {
     let mut p =
         provenance::Provenance::collect(Some(Path::new(env!("CARGO_MANIFEST_DIR"))), Preset::Draft);
     p.drew(&done);
-    p.warn("slow; slow");
+    p.warn(&"slow; slow".into());
     p.write(dir.path()).unwrap();
     let claims = reproduction::findings(dir.path()).unwrap();
     scenes::write(dir.path(), Preset::Draft).unwrap();

@@ -17,6 +17,10 @@ pub const VERMILION: &str = "#d55e00";
 pub const GREEN: &str = "#009e73";
 /// Purple of the fourth highlighted series (Okabe-Ito).
 pub const PURPLE: &str = "#aa4499";
+/// Orange of a fifth series (Okabe-Ito).
+pub const ORANGE: &str = "#e69f00";
+/// Sky blue of a sixth series (Okabe-Ito).
+pub const SKY: &str = "#56b4e9";
 
 /// Scale from data to the viridis colours.
 #[derive(Debug, Clone)]

@@ -1,5 +1,7 @@
 //! The typeface that the project ships: Source Sans 3, under the SIL Open Font License.
 
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
 use resvg::usvg::fontdb::Database;
 use std::fmt::Write;
 use std::sync::{Arc, LazyLock};
@@ -77,24 +79,7 @@ pub fn style() -> &'static str {
 
 /// Base64 with padding.
 pub fn base64(data: &[u8]) -> String {
-    const ALPHABET: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let mut out = String::with_capacity(data.len().div_ceil(3) * 4);
-    for chunk in data.chunks(3) {
-        let b = [
-            chunk[0],
-            *chunk.get(1).unwrap_or(&0),
-            *chunk.get(2).unwrap_or(&0),
-        ];
-        let n = u32::from_be_bytes([0, b[0], b[1], b[2]]);
-        for k in 0..4 {
-            if k <= chunk.len() {
-                out.push(char::from(ALPHABET[(n >> (18 - 6 * k)) as usize & 63]));
-            } else {
-                out.push('=');
-            }
-        }
-    }
-    out
+    STANDARD.encode(data)
 }
 
 #[cfg(test)]

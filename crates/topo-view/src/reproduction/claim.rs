@@ -1,6 +1,7 @@
 //! A claim, the tables that it is held against, and how far these bear it out.
 
 use std::path::{Path, PathBuf};
+use topo_analysis::Warnings;
 
 use serde::Serialize;
 use topo_lab::Variant;
@@ -100,7 +101,7 @@ pub(crate) struct Other {
 }
 
 /// Says how many of the runs, given by their warnings, are flagged; `None` if none is.
-pub(crate) fn flagged<'a>(warnings: impl IntoIterator<Item = &'a str>) -> Option<String> {
+pub(crate) fn flagged<'a>(warnings: impl IntoIterator<Item = &'a Warnings>) -> Option<String> {
     let (mut all, mut with) = (0, 0);
     for text in warnings {
         all += 1;

@@ -4,6 +4,7 @@ use crate::data::write;
 use serde::Serialize;
 use std::f64::consts::TAU;
 use std::path::Path;
+use topo_analysis::Flow;
 use topo_analysis::{LinePoint, NematicRow, NematicSample, SlicePoint};
 
 const RADIUS: f64 = 15.0;
@@ -14,9 +15,9 @@ pub fn nematic(folder: &Path) {
     let folder = folder.join("nematic");
     let mut rows = Vec::new();
     for q in 1..=9 {
-        rows.push(row(q, "off"));
+        rows.push(row(q, Flow::Off));
         if q == 4 {
-            rows.push(row(q, "on"));
+            rows.push(row(q, Flow::On));
         }
     }
     for row in &rows {
@@ -36,7 +37,7 @@ fn table<T: Serialize>(path: &Path, rows: &[T]) {
     write(path, &writer.into_inner().unwrap()).unwrap();
 }
 
-fn row(q: u32, flow: &str) -> NematicRow {
+fn row(q: u32, flow: Flow) -> NematicRow {
     let order = 0.1 * f64::from(q.saturating_sub(CRITICAL - 1)).sqrt();
     let late = if q < CRITICAL {
         0.5 / f64::from(q)
@@ -51,7 +52,7 @@ fn row(q: u32, flow: &str) -> NematicRow {
         q,
         boundary: "cut-link".into(),
         precision: "f64".into(),
-        flow: flow.into(),
+        flow,
         f_charged: 300.0 + 60.0 * f64::from(q),
         f_after_switch: 280.0 + 60.0 * f64::from(q),
         order_parameter: order,
@@ -95,7 +96,7 @@ fn slices(row: &NematicRow) -> Vec<SlicePoint> {
                 let (x, z) = (1.5 * (f64::from(i) + 0.5), 1.5 * (f64::from(k) + 0.5));
                 let r = x.hypot(z);
                 let tilt = (RADIUS / r.max(1.0)).powi(3) * x.signum();
-                let flowing = row.flow == "on" && time.is_some();
+                let flowing = row.flow.is_on() && time.is_some();
                 points.push(SlicePoint {
                     time,
                     x,
@@ -122,7 +123,7 @@ fn series(row: &NematicRow) -> Vec<NematicSample> {
                 time,
                 energy: row.f_after_switch * (-time * f64::from(row.q) / 20.0).exp(),
                 order_x: row.order_parameter,
-                flow_correlation: (row.flow == "on").then(|| (time / 9.0).cos()),
+                flow_correlation: (row.flow.is_on()).then(|| (time / 9.0).cos()),
                 ..Default::default()
             }
         })

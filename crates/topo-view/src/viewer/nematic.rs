@@ -57,7 +57,7 @@ fn colloid(sweep: &NematicSweep, row: &NematicRow) -> Result<Value, ViewError> {
         .collect();
     Ok(json!({
         "q": row.q,
-        "flow": row.flow == "on",
+        "flow": row.flow.is_on(),
         "radius": row.radius,
         "energy": text::significant(row.f_charged, 4),
         "buckled": row.is_buckled(),

@@ -8,14 +8,7 @@ const P: Faces = Faces::Periodic;
 const W: Faces = Faces::Wall;
 
 fn noise(n: usize, seed: u64) -> Vec<f64> {
-    let mut state = seed;
-    let next = || {
-        state = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (state >> 40) as f64 / 8.4e6 - 1.0
-    };
-    std::iter::repeat_with(next).take(n).collect()
+    crate::noise::noise(seed).take(n).collect()
 }
 
 fn random_force(grid: &Grid) -> MacField {

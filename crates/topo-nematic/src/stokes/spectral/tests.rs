@@ -11,14 +11,12 @@ fn grid(cells: [usize; 3], h: f64, z: Faces) -> Grid {
 
 fn noise(grid: &Grid) -> MacField {
     let mut field = MacField::zeros(grid);
-    let mut state = 1_u64;
+    let mut noise = crate::noise::noise(1);
     for component in field.components_mut() {
-        for x in component {
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1);
-            *x = (state >> 40) as f64 / (1 << 23) as f64 - 1.0;
-        }
+        component
+            .iter_mut()
+            .zip(&mut noise)
+            .for_each(|(x, y)| *x = y);
     }
     field
 }

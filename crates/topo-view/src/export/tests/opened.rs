@@ -1,8 +1,7 @@
 //! Every file of every kind of export, opened by VTK's own readers and numpy.
 
-use super::{ALL, CELL, COLLOID, FLOW, colloid, fibre, told};
+use super::{ALL, CELL, COLLOID, FLOW, colloid, fibre, told, write};
 use crate::data::read_csv;
-use crate::export::write;
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;

@@ -1,13 +1,13 @@
 //! Discharging the colloid: director and flow, energy against time, and the rates against q.
 
-use super::slice::{self, Look};
+use super::slice;
 use super::{face, mark_onset, winding_axis};
-use crate::data::{DefectLine, NematicSweep, Slice};
+use crate::data::{NematicSweep, Slice};
 use crate::error::ViewError;
 use crate::figures::figure::{Context, Drawn, Figure};
 use crate::figures::series::{Table, bounds, line, log_bounds};
 use crate::plot::canvas::Canvas;
-use crate::plot::color::{BLUE, PURPLE, QUIET, Scale, VERMILION};
+use crate::plot::color::{BLUE, PURPLE, Scale, VERMILION};
 use crate::plot::panel::{Axis, Panel};
 use crate::plot::style::Style;
 use crate::plot::text;
@@ -58,51 +58,13 @@ fn snapshots(sweep: &NematicSweep, canvas: &mut Canvas) -> Result<String, ViewEr
     let row = sweep.flowing.first().unwrap_or(&sweep.rows[0]);
     let slices = sweep.slices(row)?;
     let after: Vec<&Slice> = slices.iter().filter(|s| s.time.is_some()).collect();
-    let n = after.len().min(4);
-    if n == 0 {
+    if after.is_empty() {
         return Err(ViewError::Table {
             path: sweep.case(row).join("slices.csv"),
             reason: "no slice after the switch".to_owned(),
         });
     }
-    let picked: Vec<&Slice> = (0..n)
-        .map(|k| after[(k * (after.len() - 1)) / (n - 1).max(1)])
-        .collect();
-    let lines = sweep.rings(row)?;
-    let [half_x, half_z] = picked[0].half_size();
-    let unit = (160.0 / (2.0 * half_x)).min(150.0 / (2.0 * half_z));
-    let width = 168.0;
-    for (k, slice) in picked.iter().enumerate() {
-        let outside = slice.points.iter().filter(|p| p.x.hypot(p.z) > row.radius);
-        let speeds = outside.filter_map(|p| Some(p.ux?.hypot(p.uz?)));
-        let speed = speeds.fold(0.0, f64::max).max(1e-30);
-        let turns = slice.points.iter().filter_map(|p| p.vorticity);
-        let most = turns.map(f64::abs).fold(0.0, f64::max);
-        let scale = Scale::diverging(0.7 * most.max(1e-30));
-        let center = [12.0 + width * (k as f64 + 0.5), 32.0 + half_z * unit];
-        let look = Look {
-            vorticity: &scale,
-            speed: 0.6 * speed,
-            radius: row.radius,
-            unit,
-            center,
-        };
-        let now: Vec<&DefectLine> = lines.iter().filter(|l| l.time == slice.time).collect();
-        slice::draw(canvas, slice, &now, &look)?;
-        let time = slice.time.unwrap_or(0.0) / row.radius.powi(2);
-        let label = format!("*t* = {} *R*^{{2}}/Γ*L*", text::significant(time, 2));
-        canvas.text(center[0], 24.0, &label, Style::default().middle().size(9.0));
-        if most > 0.0 {
-            let label = format!(
-                "max |*u*| {}, |ω| {}",
-                text::significant(speed, 2),
-                text::significant(most, 2)
-            );
-            let y = center[1] + half_z * unit + 12.0;
-            let style = Style::default().middle().size(8.5).color(QUIET);
-            canvas.text(center[0], y, &label, style);
-        }
-    }
+    slice::moments(canvas, &after, &sweep.rings(row)?, row.radius)?;
     let label = format!("*q* = {}", row.q);
     canvas.text(24.0, 18.0, &label, Style::default().bold().size(10.5));
     reversal(sweep, row)

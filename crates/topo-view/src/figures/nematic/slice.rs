@@ -3,8 +3,9 @@
 use crate::data::{DefectLine, Slice};
 use crate::error::ViewError;
 use crate::plot::canvas::Canvas;
-use crate::plot::color::{INK, Scale};
-use crate::plot::render;
+use crate::plot::color::{INK, QUIET, Scale};
+use crate::plot::style::Style;
+use crate::plot::{render, text};
 use resvg::tiny_skia::{Pixmap, PremultipliedColorU8};
 use topo_analysis::SlicePoint;
 
@@ -62,6 +63,60 @@ pub fn draw(
         r##"<rect x="{:.2}" y="{:.2}" width="{:.2}" height="{:.2}" fill="none" stroke="{INK}" stroke-width="0.8"/>"##,
         corner[0], corner[1], size[0], size[1]
     ));
+    Ok(())
+}
+
+/// Most slices side by side.
+const MOST: usize = 4;
+
+/// Up to four slices of a discharge side by side, across a text width, each with its own scale of vorticity and speed.
+pub fn moments(
+    canvas: &mut Canvas,
+    after: &[&Slice],
+    lines: &[DefectLine],
+    radius: f64,
+) -> Result<(), ViewError> {
+    let n = after.len().min(MOST);
+    let picked: Vec<&Slice> = (0..n)
+        .map(|k| after[(k * (after.len() - 1)) / (n - 1).max(1)])
+        .collect();
+    let Some(first) = picked.first() else {
+        return Ok(());
+    };
+    let [half_x, half_z] = first.half_size();
+    let unit = (160.0 / (2.0 * half_x)).min(150.0 / (2.0 * half_z));
+    let width = 168.0;
+    for (k, slice) in picked.iter().enumerate() {
+        let outside = slice.points.iter().filter(|p| p.x.hypot(p.z) > radius);
+        let speeds = outside.filter_map(|p| Some(p.ux?.hypot(p.uz?)));
+        let speed = speeds.fold(0.0, f64::max).max(1e-30);
+        let turns = slice.points.iter().filter_map(|p| p.vorticity);
+        let most = turns.map(f64::abs).fold(0.0, f64::max);
+        let scale = Scale::diverging(0.7 * most.max(1e-30));
+        let center = [12.0 + width * (k as f64 + 0.5), 32.0 + half_z * unit];
+        let look = Look {
+            vorticity: &scale,
+            speed: 0.6 * speed,
+            radius,
+            unit,
+            center,
+        };
+        let now: Vec<&DefectLine> = lines.iter().filter(|l| l.time == slice.time).collect();
+        draw(canvas, slice, &now, &look)?;
+        let time = slice.time.unwrap_or(0.0) / radius.powi(2);
+        let label = format!("*t* = {} *R*^{{2}}/Γ*L*", text::significant(time, 2));
+        canvas.text(center[0], 24.0, &label, Style::default().middle().size(9.0));
+        if most > 0.0 {
+            let label = format!(
+                "max |*u*| {}, |ω| {}",
+                text::significant(speed, 2),
+                text::significant(most, 2)
+            );
+            let y = center[1] + half_z * unit + 12.0;
+            let style = Style::default().middle().size(8.5).color(QUIET);
+            canvas.text(center[0], y, &label, style);
+        }
+    }
     Ok(())
 }
 

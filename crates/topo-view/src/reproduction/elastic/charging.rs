@@ -4,6 +4,7 @@ use super::rows::{of, top};
 use crate::data::{Case, Curve, Cut, KNOTS, Sweep};
 use crate::plot::text;
 use crate::reproduction::claim::{Said, Tables, Verdict};
+use topo_analysis::Warning;
 use topo_analysis::{Spread, median};
 
 /// Knots that are their own mirror images.
@@ -16,8 +17,10 @@ const NO_OTHER_IMAGE: &str = "the energy of the other image is not in the table,
 
 pub fn charged(t: &Tables) -> Said {
     let s = of(t)?;
-    let retied = |c: &Case| c.cuts.iter().any(|r| r.warnings.contains("tied as"));
-    let stopped = |c: &Case| c.cuts.iter().any(|r| r.warnings.contains("charge stopped"));
+    let warned =
+        |c: &Case, of: fn(&Warning) -> bool| c.cuts.iter().any(|r| r.warnings.iter().any(of));
+    let retied = |c: &Case| warned(c, |w| matches!(w, Warning::Retied { .. }));
+    let stopped = |c: &Case| warned(c, |w| matches!(w, Warning::ChargeStopped { .. }));
     let drift = |c: &Case| c.first().link_drift;
     let largest = Spread::of(s.cases.iter().filter_map(drift)).map(|d| d.max);
     let holds =

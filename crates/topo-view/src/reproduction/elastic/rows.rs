@@ -2,15 +2,16 @@
 
 use crate::data::Sweep;
 use crate::reproduction::claim::{Tables, flagged};
+use topo_analysis::Warnings;
 
 /// How many of the runs of the sweep carry warnings.
 pub(super) fn flags(t: &Tables) -> Option<String> {
     flagged(warnings(of(t)?))
 }
 
-pub(super) fn warnings(s: &Sweep) -> impl Iterator<Item = &str> {
+pub(super) fn warnings(s: &Sweep) -> impl Iterator<Item = &Warnings> {
     let rows = s.cases.iter().flat_map(|c| &c.cuts);
-    rows.map(|r| r.warnings.as_str())
+    rows.map(|r| &r.warnings)
 }
 
 pub(super) fn of(t: &Tables) -> Option<&Sweep> {

@@ -80,7 +80,7 @@ fn other(claim: usize, tables: &Tables) -> Verdict {
 fn flagged_runs_confirm_nothing() {
     let one = |r: &mut Cut| {
         if r.knot == "7_7" && r.twist == 2.0 {
-            r.warnings = "discharge: strands overlap deeply".to_owned();
+            r.warnings = "discharge: strands overlap deeply".into();
         }
     };
     let energy = |r: &mut Cut| r.energy = 1.0 + 0.1 * f64::from(r.twist > 0.0);

@@ -172,7 +172,7 @@ pub fn slow_mode(t: &Tables) -> Said {
             .filter_map(|r| Some(r.late_rate? / mode(r))),
     );
     let told = ratio.map_or(String::new(), |r| {
-        let with_flow = if last.flow == "on" {
+        let with_flow = if last.flow.is_on() {
             format!(", and {} times as fast with flow", text::number(FASTER_WITH_FLOW, 3))
         } else {
             String::new()
@@ -197,7 +197,7 @@ fn mode(row: &NematicRow) -> f64 {
     // plates are 30/7 of a radius apart, in an even number of cells
     let cells = 2.0 * (30.0 / 7.0 * row.radius / row.spacing / 2.0).round();
     let still = 2.0 * (PI / (cells * row.spacing)).powi(2);
-    if row.flow == "on" {
+    if row.flow.is_on() {
         FASTER_WITH_FLOW * still
     } else {
         still

@@ -9,6 +9,7 @@ use crate::reproduction::claim::Verdict::{Confirmed, NotJudged};
 use crate::reproduction::claim::{Tables, Verdict};
 use std::f64::consts::PI;
 use std::path::Path;
+use topo_analysis::Flow;
 use topo_analysis::NematicRow;
 
 const RADIUS: f64 = 20.0;
@@ -30,7 +31,7 @@ fn row(q: u32) -> NematicRow {
         q,
         boundary: "cut-link".into(),
         precision: "f64".into(),
-        flow: "off".into(),
+        flow: Flow::Off,
         f_charged: 500.0 + 80.0 * x,
         order_parameter: pick(1e-6, 0.05 + 0.01 * above),
         ring_mode: Some(q),
@@ -60,7 +61,7 @@ fn tables(folder: &Path, rows: Vec<NematicRow>, flowing: Vec<NematicRow>) -> Tab
 
 /// What claim `n` says to rows, with files of the cases in a folder.
 fn said(n: usize, rows: &[NematicRow], folder: &Path) -> (String, Verdict) {
-    let (flowing, still) = rows.iter().cloned().partition(|r| r.flow == "on");
+    let (flowing, still) = rows.iter().cloned().partition(|r| r.flow.is_on());
     (CLAIMS[n - 16].look)(&tables(folder, still, flowing)).unwrap()
 }
 
@@ -86,7 +87,10 @@ fn runs_with_warnings_confirm_nothing() {
     let flag = |from: u32| {
         move |rows: &mut Vec<NematicRow>| {
             for r in rows.iter_mut().filter(|r| r.q >= from) {
-                r.warnings = format!("charge {} is under-resolved: 6 nodes a wavelength", r.q);
+                r.warnings.push(format!(
+                    "charge {} is under-resolved: 6 nodes a wavelength",
+                    r.q
+                ));
             }
         }
     };

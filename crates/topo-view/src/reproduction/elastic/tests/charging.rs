@@ -14,8 +14,8 @@ fn claim_1_needs_every_state_its_type_and_its_linking_number() {
     let changes: [fn(&mut Cut); 4] = [
         |r| r.link_drift = Some(1e-9),
         |r| r.link_drift = None,
-        |r| r.warnings = "the charged rod is tied as 0_1".to_owned(),
-        |r| r.warnings = "charge stopped: step too small".to_owned(),
+        |r| r.warnings = "the charged rod is tied as 0_1".into(),
+        |r| r.warnings = "charge stopped: step too small".into(),
     ];
     for change in changes {
         let one = published(|r| {

@@ -76,7 +76,7 @@ fn claim_11_needs_a_knot_that_is_slow_under_every_choice() {
     );
     // warnings of another choice count too
     let mut made = under(slow(), &[&[("7_4", 1.8)]]);
-    made.choices[0].sweep.cases[0].cuts[0].warnings = "stopped".to_owned();
+    made.choices[0].sweep.cases[0].cuts[0].warnings = "stopped".into();
     assert_eq!(verdict(11, &made), Partly);
 }
 

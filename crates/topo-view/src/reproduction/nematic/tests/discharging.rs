@@ -3,6 +3,7 @@
 use super::{CLAIMS, MODE, RADIUS, as_it_is, only_buckled, only_flat, row, said, tables, verdict};
 use crate::reproduction::claim::Verdict::{Confirmed, NotConfirmed, NotJudged, Partly};
 use std::path::Path;
+use topo_analysis::Flow;
 use topo_analysis::{NematicRow, NematicSample, write_table};
 
 /// Writes the time series of a case: radius of the ring over that of the particle, and correlation of the flow.
@@ -46,7 +47,7 @@ fn the_flow_changes_direction() {
     let folder = tempfile::tempdir().unwrap();
     let rows: Vec<NematicRow> = (1..=2)
         .map(|q| NematicRow {
-            flow: "on".into(),
+            flow: Flow::On,
             ..row(q)
         })
         .collect();
@@ -132,7 +133,7 @@ fn far_above_the_discharge_is_slow_again() {
 fn with_flow_the_slow_mode_is_faster_by_the_closed_form() {
     let mut rows: Vec<NematicRow> = (1..=10).map(row).collect();
     for r in &mut rows {
-        r.flow = "on".into();
+        r.flow = Flow::On;
         r.late_rate = r.late_rate.map(|l| 1.105_707 * l);
     }
     // a sweep that has runs with flow only is judged by these
