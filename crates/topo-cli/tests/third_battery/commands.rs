@@ -1,111 +1,20 @@
-//! The commands of the program, with this battery among the others.
+//! The commands, as for the other batteries: run, shards, resumption, comparison, exports, pictures, refusals.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Output, Stdio};
+use std::process::Child;
 use std::time::{Duration, Instant};
 
-use clap::Parser;
-use topo_cli::{Batteries, Cli};
-use topo_lab::{Battery, Colloid, Elastic};
+use topo_core::Interrupt;
+use topo_lab::Battery;
 
 use crate::battery::Unwinding;
 use crate::fibre::time_of;
-
-/// Words of the command line, when this executable is the program.
-const WORDS: &str = "THIRD_BATTERY_WORDS";
-
-/// The program: what is left of it beside the batteries of `topo` is one line, `topo_cli::main_with(&batteries)`.
-#[test]
-fn the_program() {
-    let Ok(words) = std::env::var(WORDS) else {
-        return;
-    };
-    let batteries: [&dyn Battery; 3] = [&Elastic, &Colloid, &Unwinding];
-    let batteries: &Batteries<'_> = &batteries;
-    let words: Vec<String> = serde_json::from_str(&words).unwrap();
-    let cli = Cli::try_parse_from(words).unwrap();
-    let code = match topo_cli::run(cli, batteries) {
-        Ok(_) => 0,
-        Err(error) => {
-            topo_cli::note!("error: {error}");
-            error.exit_code()
-        }
-    };
-    std::process::exit(code.into());
-}
-
-fn program(words: &[&str]) -> Command {
-    let mut command = Command::new(std::env::current_exe().unwrap());
-    let words: Vec<&str> = ["topo"].iter().chain(words).copied().collect();
-    command.env(WORDS, serde_json::to_string(&words).unwrap());
-    command.args(["--exact", "commands::the_program", "--nocapture"]);
-    command.stdout(Stdio::piped()).stderr(Stdio::piped());
-    command
-}
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8_lossy(bytes).into_owned()
-}
-
-fn done(words: &[&str]) -> Output {
-    let output = program(words).output().unwrap();
-    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
-    output
-}
-
-fn refused(words: &[&str]) -> String {
-    let output = program(words).output().unwrap();
-    let said = text(&output.stderr);
-    assert_eq!(output.status.code(), Some(2), "{said}");
-    said
-}
-
-/// A folder with a scene in it, and where the results go.
-struct Desk {
-    dir: tempfile::TempDir,
-}
-
-impl Desk {
-    fn new(scene: &str) -> Self {
-        let dir = tempfile::tempdir().unwrap();
-        std::fs::write(dir.path().join("fibres.toml"), scene).unwrap();
-        Self { dir }
-    }
-
-    fn path(&self, name: &str) -> String {
-        self.dir.path().join(name).to_str().unwrap().to_owned()
-    }
-
-    fn run(&self, out: &str, more: &[&str]) -> Output {
-        let (scene, out) = (self.path("fibres.toml"), self.path(out));
-        done(&[&["run", &scene, "--out", &out], more].concat())
-    }
-
-    fn folder(&self, out: &str) -> PathBuf {
-        self.dir.path().join(out).join("fibres")
-    }
-
-    fn are_the_same(&self, one: &str, other: &str) {
-        let said = done(&["compare", &self.path(one), &self.path(other)]);
-        assert!(text(&said.stdout).contains("the same"));
-    }
-}
+use crate::program::{BATTERIES, Desk, cases, done, program, refused, table, text};
 
 const SCENE: &str = "[unwinding]\nlength = [10, 20]\nturn = { from = -1, to = 3, n = 2 }\n";
 /// Cases of a few tenths of a second.
 const LONG: &str = "[unwinding]\nlength = 10\nturn = [1, 2, 3, 4, 5, 6]\nedges = 1000\ntolerance = 1e-9\nuntil_released = 0.99999\n";
-
-fn table(folder: &Path) -> Vec<BTreeMap<String, String>> {
-    let mut reader = csv::Reader::from_path(folder.join("sweep.csv")).unwrap();
-    reader.deserialize().map(Result::unwrap).collect()
-}
-
-fn cases(folder: &Path) -> Vec<PathBuf> {
-    let entries = std::fs::read_dir(folder).into_iter().flatten();
-    let paths = entries.map(|e| e.unwrap().path());
-    paths.filter(|p| p.join("run.json").exists()).collect()
-}
 
 #[test]
 fn a_scene_of_a_third_battery_runs_as_those_of_the_others() {
@@ -255,6 +164,46 @@ fn what_a_third_battery_does_not_know_is_refused() {
         assert!(words.iter().all(|w| said.contains(w)), "{said}");
     }
     assert!(!Path::new(&out).exists());
+}
+
+#[test]
+fn cases_of_a_third_battery_are_exported() {
+    let desk = Desk::new(SCENE);
+    desk.run("out", &[]);
+    let case = desk.folder("out").join("straight_l10_turn+3.00_n100");
+    let case = case.to_str().unwrap();
+    let to = desk.path("exported");
+    let said = text(&done(&["export", case, "--to", &to]).stdout);
+    assert!(said.contains("3 files written to"), "{said}");
+    let line = std::fs::read_to_string(format!("{to}/charged.vtp")).unwrap();
+    assert!(line.contains("NumberOfPoints=\"101\"") && line.contains("\"angle\""));
+    assert!(Path::new(&format!("{to}/end.vtp")).exists());
+    let archive = std::fs::read(format!("{to}/fibre.npz")).unwrap();
+    assert!(archive.starts_with(b"PK"));
+    let said = refused(&["export", case, "--to", &to, "--format", "nemaktis"]);
+    assert!(said.contains("no director"), "{said}");
+}
+
+/// Pictures of whatever a folder holds, by what the battery says of its columns.
+#[test]
+fn sweeps_of_a_third_battery_are_drawn() {
+    let desk = Desk::new(SCENE);
+    desk.run("out", &[]);
+    let folder = desk.folder("out");
+    let found = topo_view::folder::find(&folder, &BATTERIES).unwrap();
+    let made = topo_view::folder::draw(&found, &Interrupt::new(), &|_| {}).unwrap();
+    assert!(
+        made.drawn[0].contains("a straight fibre, 4 discharges"),
+        "{:?}",
+        made.drawn
+    );
+    for name in ["over-length", "over-turn", "curves"] {
+        for extension in ["csv", "svg", "png"] {
+            let path = folder.join(format!("figures/{name}.{extension}"));
+            assert!(path.exists(), "{path:?} of {:?}", made.files);
+        }
+    }
+    assert!(made.page.exists());
 }
 
 /// A battery of a crate of its own is one line in a program's list: nothing else in the workspace knows of this one.

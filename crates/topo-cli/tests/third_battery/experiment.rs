@@ -1,8 +1,8 @@
 //! The cases of a scene, their runs and the table.
 
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use serde_json::json;
-use topo_analysis::DischargeTimes;
+use topo_analysis::{DischargeTimes, Warnings};
 use topo_core::{CpuClock, StopReason};
 use topo_lab::{
     About, Battery, CaseName, Cost, Event, LabError, Outcome, Place, SweepSettings, identity,
@@ -10,6 +10,7 @@ use topo_lab::{
 
 use crate::battery::{Fibres, Unwinding};
 use crate::fibre::{self, TWIST};
+use crate::rows::{Row, Sample, Vertex};
 
 /// A scene as an experiment.
 #[derive(Debug)]
@@ -23,44 +24,6 @@ pub struct Case {
     edges: f64,
 }
 
-/// Its row of the table: energies in C/h, times in ζ h²/C.
-#[derive(Debug, Clone, Default, Serialize, Deserialize)]
-pub struct Row {
-    pub case: String,
-    pub length: f64,
-    pub turn: f64,
-    pub edges: f64,
-    pub energy: f64,
-    pub energy_left: f64,
-    pub dissipated: f64,
-    pub t50: Option<f64>,
-    pub t90: Option<f64>,
-    pub t95: Option<f64>,
-    pub t99: Option<f64>,
-    pub ledger_residual: f64,
-    pub steps: u64,
-    pub cpu_seconds: f64,
-    pub warnings: String,
-}
-
-impl topo_lab::Row for Row {
-    fn cpu_seconds(&self) -> f64 {
-        self.cpu_seconds
-    }
-
-    fn warnings(&self) -> &str {
-        &self.warnings
-    }
-}
-
-/// A line of `series.csv`.
-#[derive(Serialize)]
-struct Sample {
-    time: f64,
-    energy: f64,
-    dissipated: f64,
-}
-
 const SHARES: [f64; 4] = [0.5, 0.9, 0.95, 0.99];
 
 impl Experiment {
@@ -70,7 +33,10 @@ impl Experiment {
         let times = DischargeTimes::of(curve, &[TWIST], energy, &SHARES);
         let at = |share| times.at(share).map(|t| t.value);
         let last = curve.len() - 1;
-        let warning = (run.stop == StopReason::ReachedTime).then_some("not finished in 100 L²");
+        let mut warnings = Warnings::default();
+        if run.stop == StopReason::ReachedTime {
+            warnings.push("not finished in 100 L²");
+        }
         Row {
             energy,
             energy_left: curve.stored_total(last),
@@ -81,7 +47,7 @@ impl Experiment {
             t99: at(0.99),
             ledger_residual: run.ledger_residual,
             steps: run.n_steps,
-            warnings: warning.unwrap_or_default().to_owned(),
+            warnings,
             ..topo_lab::Experiment::blank_row(self, case)
         }
     }
@@ -202,6 +168,17 @@ impl topo_lab::Experiment for Experiment {
         let series: Vec<Sample> = curve.time().iter().enumerate().map(sample).collect();
         let mut folder = place.open()?;
         folder.table("series.csv", &series)?;
+        let n = run.angles.len();
+        let vertex = |i: usize| {
+            let share = i as f64 / n as f64;
+            Vertex {
+                s: share * case.length,
+                charged: share * case.turn,
+                end: i.checked_sub(1).map_or(0.0, |k| run.angles[k]),
+            }
+        };
+        let vertices: Vec<Vertex> = (0..=n).map(vertex).collect();
+        folder.table("angles.csv", &vertices)?;
         let about = About {
             case: json!(case),
             scene: json!(self.0),

@@ -132,7 +132,8 @@ impl LinearlyImplicit for Fibre {
             self.off_diagonal[i] = -c;
             self.pivots[i] = 1.0 + n_edges * c;
             if i > 0 {
-                self.pivots[i] -= c * -self.off_diagonal[i - 1] / self.pivots[i - 1];
+                let coupling = self.off_diagonal[i] * self.off_diagonal[i - 1];
+                self.pivots[i] -= coupling / self.pivots[i - 1];
             }
         }
         Ok(())
@@ -153,6 +154,8 @@ impl LinearlyImplicit for Fibre {
 /// A fibre that was let go and followed.
 pub struct Discharge {
     pub curve: DischargeCurve,
+    /// Angles at its end, of the vertices beyond the clamped one.
+    pub angles: Vec<f64>,
     pub stop: StopReason,
     pub ledger_residual: f64,
     pub n_steps: u64,
@@ -191,8 +194,10 @@ pub fn discharge(
     });
     let ledger_residual = run.model().ledger.relative_residual();
     let n_steps = run.n_steps();
+    let angles = run.state().clone();
     Ok(Discharge {
         curve,
+        angles,
         stop,
         ledger_residual,
         n_steps,

@@ -1,10 +1,13 @@
 //! A battery from outside the workspace's crates: a few files that fill in the traits of topo-lab, and the ordinary commands run,
-//! share out, resume and compare its scenes.
+//! share out, resume, compare, export and draw its scenes.
 
 mod battery;
 mod commands;
 mod experiment;
 mod fibre;
+mod program;
+mod rows;
+mod shown;
 
 use fibre::{discharge, share_left, time_of};
 use topo_analysis::DischargeTimes;
