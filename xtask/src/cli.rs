@@ -15,12 +15,36 @@ pub struct Cli {
     /// What to do.
     #[command(subcommand)]
     pub command: Command,
+    /// Print one JSON object instead of lines: command, out, tables, failed, warnings, data, and error where there is one.
+    #[arg(long, global = true)]
+    pub json: bool,
 }
 
-/// The command line of this call; says what is wrong with it, or helps, and ends.
-pub fn parse() -> Cli {
-    let matches = renamed(Cli::command()).get_matches();
-    Cli::from_arg_matches(&matches).unwrap_or_else(|e| e.exit())
+impl Command {
+    /// Its name on the command line.
+    fn name(&self) -> &'static str {
+        match self {
+            Self::Topo(command) => command.name(),
+            Self::Buckling(_) => "buckling",
+            Self::Tradeoff(_) => "tradeoff",
+            Self::Cost(_) => "cost",
+            Self::Determinism(_) => "determinism",
+            Self::Fuzz(_) => "fuzz",
+            Self::Test(_) => "test",
+            Self::Ci => "ci",
+            Self::Bench(_) => "bench",
+        }
+    }
+}
+
+/// The command line of this call.
+pub fn parse() -> Result<Cli, clap::Error> {
+    let matches = renamed(Cli::command()).try_get_matches()?;
+    let cli = Cli::from_arg_matches(&matches)?;
+    if cli.json {
+        topo_cli::output::as_json(cli.command.name());
+    }
+    Ok(cli)
 }
 
 /// Examples of `topo`'s commands with the name of this program.

@@ -11,5 +11,8 @@ use std::process::ExitCode;
 
 fn main() -> ExitCode {
     topo_view::call_program(cli::NAME);
-    topo_cli::end(commands::dispatch(cli::parse()))
+    match cli::parse() {
+        Ok(cli) => topo_cli::end(commands::dispatch(cli)),
+        Err(error) => topo_cli::refuse(&error),
+    }
 }

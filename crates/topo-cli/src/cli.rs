@@ -20,6 +20,9 @@ pub struct Cli {
     /// What to do.
     #[command(subcommand)]
     pub command: Any,
+    /// Print one JSON object instead of lines: command, out, tables, failed, warnings, data, and error where there is one.
+    #[arg(long, global = true)]
+    pub json: bool,
 }
 
 /// Any of the commands.
@@ -31,20 +34,76 @@ pub enum Any {
     /// Measurements.
     #[command(flatten)]
     Measure(Measure),
+    /// Print the completions of a shell, so that it knows commands and options.
+    #[command(after_help = "Where shells look for them:
+  topo completions bash > ~/.local/share/bash-completion/completions/topo
+  topo completions zsh > ~/.zfunc/_topo          with `fpath+=~/.zfunc` before compinit in ~/.zshrc
+  topo completions fish > ~/.config/fish/completions/topo.fish
+  topo completions powershell >> $PROFILE
+  topo completions elvish >> ~/.config/elvish/rc.elv")]
+    Completions {
+        /// Which shell.
+        shell: clap_complete::Shell,
+    },
+}
+
+impl Any {
+    /// Its name on the command line, with that of what it does to knots.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Command(command) => command.name(),
+            Self::Measure(command) => command.name(),
+            Self::Completions { .. } => "completions",
+        }
+    }
+}
+
+impl Command {
+    /// Its name on the command line, with that of what it does to knots.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Figures(_) => "figures",
+            Self::Run(_) => "run",
+            Self::Accuracy(_) => "accuracy",
+            Self::Extremes(_) => "extremes",
+            Self::Compare(_) => "compare",
+            Self::Export(_) => "export",
+            Self::Knot(args) => match args.command {
+                KnotCommand::Tighten(_) => "knot tighten",
+                KnotCommand::Identify(_) => "knot identify",
+                KnotCommand::List => "knot list",
+                KnotCommand::Show { .. } => "knot show",
+            },
+        }
+    }
+}
+
+impl Measure {
+    /// Its name on the command line.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Buckling(_) => "buckling",
+            Self::Tradeoff(_) => "tradeoff",
+            Self::Cost(_) => "cost",
+        }
+    }
 }
 
 /// What to do.
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// Compute what figures need and draw them, with a gallery page.
+    /// Compute what the published figures need and draw them, with a gallery page; or draw what a folder of results holds.
     ///
-    /// Finished runs are reused; a change of quality or code recomputes what it touches.
+    /// Finished runs are reused; a change of quality or code recomputes what it touches. Of a folder nothing is computed: results
+    /// against each setting that is swept in it, discharge curves, shapes, into FOLDER/figures with a page.
     #[command(after_help = "Examples:
   topo figures                              all figures, draft quality
   topo figures --only elastic-discharge     one of them
   topo figures --quality standard --out results-standard
   topo figures --quality paper --shard 2/4 --out part-2    every fourth case, to be merged
-  topo figures --quality paper --as-is      draw the cases that are finished")]
+  topo figures --quality paper --as-is      draw the cases that are finished
+  topo figures results/my-scene             a sweep of your own, also while it runs
+  topo figures results                      every sweep in a folder")]
     Figures(FiguresArgs),
     /// Run the scene of a file: charge, cut, discharge.
     #[command(after_help = "Examples:
@@ -61,10 +120,11 @@ pub enum Command {
     Accuracy(AccuracyArgs),
     /// Drive rods, nematics and the knot generator to their extremes: maps of what converges and why the rest stops.
     #[command(after_help = "Examples:
-  topo stability                       all maps, draft: minutes
-  topo stability --only nematic        those of one system
-  topo stability --quality standard    every run to its very end")]
-    Stability(SystemsArgs),
+  topo extremes                       all maps, draft: minutes
+  topo extremes --only nematic        those of one system
+  topo extremes --quality standard    every run to its very end")]
+    #[command(visible_alias = "stability")]
+    Extremes(SystemsArgs),
     /// Compare the numbers of two results folders to the byte, but for what tells how long they took.
     #[command(after_help = "Example:
   topo compare results results-again")]
@@ -107,6 +167,9 @@ pub enum Measure {
 /// Options of `figures`.
 #[derive(Debug, Args)]
 pub struct FiguresArgs {
+    /// Folder of results, of a scene or of several: what it holds is drawn, and nothing computed.
+    #[arg(value_name = "FOLDER", conflicts_with_all = ["only", "quality", "shard", "as_is", "struts", "knots", "out", "jobs", "fresh"])]
+    pub folder: Option<PathBuf>,
     /// Draw only this figure; may be given several times.
     #[arg(long, value_name = "NAME")]
     pub only: Vec<String>,
@@ -221,7 +284,7 @@ pub enum ExportFormat {
     All,
 }
 
-/// Options of `stability` and `tradeoff`.
+/// Options of `extremes` and `tradeoff`.
 #[derive(Debug, Args)]
 pub struct SystemsArgs {
     /// Only this system (rod, nematic, knots); may be given several times.

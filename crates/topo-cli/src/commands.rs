@@ -5,19 +5,23 @@ pub mod buckling;
 pub mod compare;
 pub mod cost;
 mod export;
+mod extremes;
 mod figures;
+mod folder;
 mod knot;
 mod run;
 mod settings;
-mod stability;
 pub mod tradeoff;
 
 use std::path::Path;
 use std::process::ExitCode;
 
+use clap::CommandFactory;
+
 use crate::batteries::Batteries;
-use crate::cli::{Command, Measure};
+use crate::cli::{Cli, Command, Measure};
 use crate::error::CliError;
+use crate::output;
 
 /// Runs a command of a program that knows these batteries; only `knot identify` ends well in more ways than one. Figures note the
 /// commit of `workspace`, if there is one.
@@ -31,10 +35,13 @@ pub fn dispatch(
 ) -> Result<ExitCode, CliError> {
     match command {
         Command::Knot(args) => return knot::run(&args),
-        Command::Figures(args) => figures::run(&args, workspace),
+        Command::Figures(args) => match &args.folder {
+            Some(folder) => folder::run(folder, batteries),
+            None => figures::run(&args, workspace),
+        },
         Command::Run(args) => run::run(&args, batteries),
         Command::Accuracy(args) => accuracy::run(&args),
-        Command::Stability(args) => stability::run(&args),
+        Command::Extremes(args) => extremes::run(&args),
         Command::Compare(args) => compare::run(&args),
         Command::Export(args) => export::run(&args, batteries),
     }
@@ -51,4 +58,13 @@ pub fn measure(command: &Measure) -> Result<(), CliError> {
         Measure::Tradeoff(args) => tradeoff::run(args, &mut |_, _| Ok(())),
         Measure::Cost(args) => cost::run(args).map(drop),
     }
+}
+
+/// Prints the completions of a shell for the program `topo`.
+pub(crate) fn completions(shell: clap_complete::Shell) {
+    let mut text = Vec::new();
+    clap_complete::generate(shell, &mut Cli::command(), "topo", &mut text);
+    let text = String::from_utf8_lossy(&text);
+    output::data("completions", &text);
+    say!("{text}");
 }

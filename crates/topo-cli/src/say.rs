@@ -1,12 +1,14 @@
 //! Lines on the terminal. A reader that has gone (`| head`, a closed window) is no fault: what cannot be written is dropped, and the
 //! work goes on.
 
-/// Writes a line to the standard output.
+/// Writes a line to the standard output; with `--json` it goes nowhere.
 #[macro_export]
 macro_rules! say {
     ($($text:tt)*) => {{
-        use std::io::Write as _;
-        let _ = writeln!(std::io::stdout(), $($text)*);
+        if !$crate::output::is_json() {
+            use std::io::Write as _;
+            let _ = writeln!(std::io::stdout(), $($text)*);
+        }
     }};
 }
 

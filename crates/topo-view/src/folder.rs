@@ -12,6 +12,7 @@ use crate::figures::Drawn;
 use crate::shown::Shown;
 use crate::sweeps::{Cases, against, curves, parts};
 use topo_core::Interrupt;
+use topo_lab::FailedCase;
 
 pub use find::{Found, find};
 
@@ -24,7 +25,9 @@ pub struct Made {
     pub files: Vec<PathBuf>,
     /// What was drawn of each sweep, in words.
     pub drawn: Vec<String>,
-    /// What was not, and why.
+    /// Cases that failed.
+    pub failed: Vec<FailedCase>,
+    /// What was not drawn or is not there, and why.
     pub notes: Vec<String>,
 }
 
@@ -95,7 +98,9 @@ pub fn draw(
         &page,
         page::write(&found.folder, &sweeps, &found.foreign).as_bytes(),
     )?;
-    let mut notes: Vec<String> = sweeps.iter().flat_map(|s| s.lacks()).collect();
+    let failed = sweeps.iter().flat_map(|s| s.cases.failed.clone());
+    let failed = failed.collect();
+    let mut notes: Vec<String> = sweeps.iter().flat_map(DrawnSweep::remarks).collect();
     notes.extend(
         found
             .foreign
@@ -106,6 +111,7 @@ pub fn draw(
         page,
         files,
         drawn,
+        failed,
         notes,
     })
 }
@@ -162,21 +168,22 @@ fn sweep(
 }
 
 impl DrawnSweep {
-    /// What the sweep lacks, in sentences.
+    /// Everything that the sweep lacks, in sentences.
     fn lacks(&self) -> Vec<String> {
+        let failed = self.cases.failed.iter();
+        let failed = failed.map(|f| format!("{}: failed: {}: {}", self.name, f.case, f.reason));
+        failed.chain(self.remarks()).collect()
+    }
+
+    /// What the sweep lacks besides failed cases, in sentences.
+    fn remarks(&self) -> Vec<String> {
         let Cases {
-            failed,
-            unfinished,
-            lost,
-            ..
+            unfinished, lost, ..
         } = &self.cases;
         let named = |what: &str, names: &[String]| {
             (!names.is_empty()).then(|| format!("{}: {what}: {}", self.name, names.join(", ")))
         };
-        let failed = failed
-            .iter()
-            .map(|f| format!("{}: failed: {}: {}", self.name, f.case, f.reason));
-        let mut all: Vec<String> = failed.collect();
+        let mut all: Vec<String> = Vec::new();
         all.extend(named("not finished", unfinished));
         all.extend(named("in the table, but without a folder", lost));
         all.extend(self.notes.iter().map(|n| format!("{}: {n}", self.name)));

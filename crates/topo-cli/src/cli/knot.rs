@@ -122,9 +122,6 @@ pub struct IdentifyArgs {
     /// Format of the file, if its extension does not tell: csv, xyz or vect.
     #[arg(long, value_name = "FORMAT", value_parser = format)]
     pub format: Option<CurveFormat>,
-    /// Write what is found as JSON.
-    #[arg(long)]
-    pub json: bool,
 }
 
 /// Most inversions or hops of a search: half a second each.

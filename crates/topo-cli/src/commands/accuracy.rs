@@ -4,6 +4,7 @@ use super::settings::settings;
 use crate::cli::AccuracyArgs;
 use crate::error::CliError;
 use crate::interrupt;
+use crate::output;
 use crate::progress::Progress;
 use topo_analysis::{quantile, write_table};
 use topo_knots::KnotTable;
@@ -42,6 +43,9 @@ fn accuracy(preset: Preset, settings: &SweepSettings) -> Result<(), CliError> {
     interrupt::check(stop)?;
     let path = settings.out.join("accuracy.csv");
     write_table(&path, &rows)?;
+    output::out(&settings.out);
+    output::table(&path);
+    output::data("cases", &rows);
     say!(
         "knot    theta'h     cut     t50   error      t99   error  E/E_ref   CPU s  CPU s of reference"
     );

@@ -6,6 +6,7 @@ use super::settings::threads;
 use crate::cli::BucklingArgs;
 use crate::error::CliError;
 use crate::interrupt;
+use crate::output;
 use crate::progress::Progress;
 use topo_analysis::{read_table, write_table};
 use topo_lab::{BucklingRow, buckling_cases, buckling_study, with_jobs};
@@ -63,6 +64,9 @@ pub fn run(args: &BucklingArgs) -> Result<String, CliError> {
         rows.sort_by(|a, b| a.radius.total_cmp(&b.radius));
         write_table(&path, &rows)?;
     }
+    output::out(&args.work.out);
+    output::table(&path);
+    output::data("charges", &rows);
     let text = text(&rows);
     data::write(&folder.join("buckling.md"), text.as_bytes())?;
     say!("{text}");

@@ -2,6 +2,7 @@
 
 use crate::cli::CompareArgs;
 use crate::error::CliError;
+use crate::output;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use topo_view::ViewError;
@@ -15,6 +16,7 @@ const TOLD: usize = 20;
 
 pub(super) fn run(args: &CompareArgs) -> Result<(), CliError> {
     let differences = differences(&args.first, &args.second, &DROPPED)?;
+    output::data("differences", &differences);
     for line in differences.iter().take(TOLD) {
         say!("{line}");
     }

@@ -3,6 +3,7 @@
 use crate::cli::CostArgs;
 use crate::error::CliError;
 use crate::interrupt;
+use crate::output;
 use topo_analysis::write_table;
 use topo_lab::{TermCost, term_costs};
 use topo_view::data;
@@ -28,7 +29,11 @@ pub fn run(args: &CostArgs) -> Result<String, CliError> {
         path: folder.clone(),
         source,
     })?;
-    write_table(&folder.join("cost.csv"), &rows)?;
+    let table = folder.join("cost.csv");
+    write_table(&table, &rows)?;
+    output::out(&args.out);
+    output::table(&table);
+    output::data("terms", &rows);
     let text = text(&rows);
     data::write(&folder.join("cost.md"), text.as_bytes())?;
     say!("{text}");

@@ -3,6 +3,7 @@
 use crate::batteries::Batteries;
 use crate::cli::{ExportArgs, ExportFormat};
 use crate::error::CliError;
+use crate::output;
 use topo_view::export::{self, Wanted};
 
 /// Writes the files of a case of one of the batteries.
@@ -24,7 +25,10 @@ pub fn run(args: &ExportArgs, batteries: &Batteries<'_>) -> Result<(), CliError>
     };
     let folder = args.to.clone().unwrap_or_else(|| args.case.join("export"));
     let made = export::write(&args.case, &folder, &wanted, batteries)?;
+    output::out(&folder);
+    output::data("files", &made.files);
     for note in &made.notes {
+        output::warning(note);
         say!("note: {note}");
     }
     say!("{} files written to {}", made.files.len(), folder.display());

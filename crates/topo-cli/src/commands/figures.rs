@@ -5,7 +5,9 @@ use crate::cli::FiguresArgs;
 use crate::compute;
 use crate::error::CliError;
 use crate::interrupt;
+use crate::output;
 use crate::progress::Progress;
+use serde_json::json;
 use std::path::Path;
 use std::time::Instant;
 use topo_core::Interrupt;
@@ -21,6 +23,7 @@ pub fn run(args: &FiguresArgs, workspace: Option<&Path>) -> Result<(), CliError>
     let jobs = threads(args.work.jobs)?;
     let interrupt = interrupt::install();
     let results = args.work.out.as_path();
+    output::out(results);
     let mut record = Provenance::collect(workspace, args.quality);
 
     let table = KnotTable::builtin_and(args.knots.as_deref())?;
@@ -65,9 +68,17 @@ pub fn run(args: &FiguresArgs, workspace: Option<&Path>) -> Result<(), CliError>
     }
     drawn.write_pages(args, &mut record)?;
     for d in &drawn.figures[..n_drawn] {
-        say!("{}: {}", d.figure.name, d.finding);
+        let name = d.figure.name;
+        output::table(&results.join(format!("figures/{name}.csv")));
+        output::one_more("figures", json!({ "name": name, "finding": d.finding }));
+        say!("{name}: {}", d.finding);
     }
-    say!("gallery: {}", results.join("index.html").display());
+    for (warning, n) in &record.warnings {
+        output::warning(&format!("{warning} ({n})"));
+    }
+    let page = results.join("index.html");
+    output::data("page", page.display().to_string());
+    say!("gallery: {}", page.display());
     failures.into_result()
 }
 
@@ -112,7 +123,9 @@ fn draw_movies(
         };
         let finding = movies::draw(movie, &stage)?;
         progress.finish();
-        say!("{}: {finding}", movie.name);
+        let name = movie.name;
+        output::one_more("movies", json!({ "name": name, "finding": finding }));
+        say!("{name}: {finding}");
         let seconds = start.elapsed().as_secs_f64();
         record.wall_seconds.insert(movie.name.to_owned(), seconds);
         done.push((movie, finding));

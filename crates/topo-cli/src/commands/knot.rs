@@ -8,6 +8,7 @@ mod tighten;
 
 use crate::cli::{KnotArgs, KnotCommand};
 use crate::error::CliError;
+use crate::output;
 use print::print;
 use std::process::ExitCode;
 use topo_knots::KnotTable;
@@ -17,8 +18,16 @@ pub fn run(args: &KnotArgs) -> Result<ExitCode, CliError> {
     match &args.command {
         KnotCommand::Tighten(args) => tighten::run(args, &table)?,
         KnotCommand::Identify(args) => return identify::run(args, &table),
-        KnotCommand::List => print(&show::list(&table)),
-        KnotCommand::Show { name } => print(&show::entry(&*table.get(name)?)),
+        KnotCommand::List => {
+            let knots: Vec<_> = table.iter().map(show::facts).collect();
+            output::data("knots", knots);
+            print(&show::list(&table));
+        }
+        KnotCommand::Show { name } => {
+            let knot = table.get(name)?;
+            output::data("knot", show::facts(&knot));
+            print(&show::entry(&knot));
+        }
     }
     Ok(ExitCode::SUCCESS)
 }

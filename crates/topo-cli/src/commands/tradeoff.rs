@@ -8,6 +8,7 @@ use super::settings::threads;
 use crate::cli::SystemsArgs;
 use crate::error::CliError;
 use crate::interrupt;
+use crate::output;
 use crate::progress::Progress;
 use topo_analysis::{read_table, write_table};
 use topo_core::Interrupt;
@@ -30,6 +31,7 @@ const KEEP: Duration = Duration::from_secs(10);
 pub fn prepare(args: &SystemsArgs) -> Result<PathBuf, CliError> {
     threads(args.work.jobs)?;
     writable(&args.work.out)?;
+    output::out(&args.work.out);
     let folder = args.work.out.join("tradeoff");
     std::fs::create_dir_all(&folder).map_err(|source| CliError::File {
         path: folder.clone(),
@@ -61,7 +63,9 @@ pub fn run(args: &SystemsArgs, measured: &mut Hears<'_>) -> Result<(), CliError>
         write_table(&kept, &runs)?;
         interrupt::check(&stop)?;
         let rows = compared(system, &runs);
-        write_table(&folder.join(format!("{}.csv", system.name())), &rows)?;
+        let table = folder.join(format!("{}.csv", system.name()));
+        write_table(&table, &rows)?;
+        output::table(&table);
         let picture = topo_view::tradeoff::draw(system, &rows)?;
         for (extension, bytes) in [("png", &picture.png[..]), ("svg", picture.svg.as_bytes())] {
             let path = folder.join(format!("{}.{extension}", system.name()));
@@ -79,6 +83,7 @@ pub fn run(args: &SystemsArgs, measured: &mut Hears<'_>) -> Result<(), CliError>
     let report = topo_view::tradeoff::report(args.quality, &tables);
     let path = folder.join("tradeoff.md");
     data::write(&path, report.as_bytes())?;
+    output::data("report", path.display().to_string());
     say!("report: {}", path.display());
     Ok(())
 }

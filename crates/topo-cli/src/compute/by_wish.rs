@@ -4,6 +4,7 @@ use std::path::Path;
 
 use crate::duration::duration;
 use crate::error::CliError;
+use crate::output;
 use topo_analysis::{median, quantile, write_table};
 use topo_lab::{ErrorRow, Grant, Wish};
 
@@ -11,6 +12,7 @@ use topo_lab::{ErrorRow, Grant, Wish};
 pub fn tell_grant(grant: &Grant) {
     let (p, unit) = (&grant.point, grant.unit);
     if let Some(reason) = &grant.stale {
+        output::warning(reason);
         note!("warning: {reason}");
     }
     note!(
@@ -29,6 +31,7 @@ pub fn tell_grant(grant: &Grant) {
 pub fn tell_errors(grant: &Grant, rows: &[ErrorRow], folder: &Path) -> Result<(), CliError> {
     let path = folder.join("errors.csv");
     write_table(&path, rows)?;
+    output::table(&path);
     say!("estimated errors:");
     for r in rows {
         let time = r

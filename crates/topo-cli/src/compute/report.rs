@@ -2,6 +2,7 @@
 
 use crate::duration::duration;
 use crate::error::CliError;
+use crate::output;
 use crate::progress::Progress;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
@@ -109,7 +110,9 @@ pub struct Failures {
 impl Failures {
     /// Adds those of a sweep whose table is in `folder`, and says which they are.
     pub fn add(&mut self, failed: &[FailedCase], folder: &Path) {
-        for FailedCase { case, reason } in failed {
+        for one in failed {
+            let FailedCase { case, reason } = one;
+            output::failed(one);
             note!("failed: {case}: {reason}");
         }
         if self.n == 0 {

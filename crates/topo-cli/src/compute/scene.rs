@@ -6,6 +6,7 @@ use super::report::{Failures, Reporter, tell_taken};
 use super::{by_wish, estimate};
 use crate::batteries::Batteries;
 use crate::error::CliError;
+use crate::output;
 use topo_lab::{Options, Sweep, SweepSettings, Swept, read_scene};
 
 /// Runs a user's scene and prints its table; `options` stand above what the file says.
@@ -27,6 +28,9 @@ pub fn scene(
     let swept = sweep(&*experiment, settings)?;
     let mut failures = Failures::default();
     failures.add(swept.failed(), &folder);
+    output::out(&folder);
+    output::table(&folder.join("sweep.csv"));
+    swept.warnings().iter().for_each(output::warning);
     for line in swept.lines() {
         say!("{line}");
     }

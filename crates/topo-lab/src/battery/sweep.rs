@@ -97,6 +97,9 @@ pub trait Swept {
     /// Its table and what is found in it, line by line, warnings below their rows.
     fn lines(&self) -> Vec<String>;
 
+    /// What is doubtful about its rows.
+    fn warnings(&self) -> Vec<String>;
+
     /// Runs the coarser experiment whose difference tells the errors of this one; nothing where there is none.
     ///
     /// # Errors

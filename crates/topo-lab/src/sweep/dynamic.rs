@@ -90,6 +90,12 @@ impl<E: Experiment> Swept for Finished<'_, E> {
         lines
     }
 
+    fn warnings(&self) -> Vec<String> {
+        let rows = self.report.rows.iter();
+        rows.flat_map(|row| row.warnings().iter().map(ToString::to_string))
+            .collect()
+    }
+
     fn check(
         &self,
         grant: &Grant,

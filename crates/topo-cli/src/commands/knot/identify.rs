@@ -6,6 +6,7 @@ mod tests;
 
 use crate::cli::IdentifyArgs;
 use crate::error::CliError;
+use crate::output;
 use report::{Component, Finding, Frame, Report};
 use std::fmt::Write as _;
 use std::process::ExitCode;
@@ -17,15 +18,13 @@ use topo_knots::{
 /// Exit code where several types fit, or one that is not proved.
 const NOT_CERTAIN: u8 = 3;
 
-/// Names what the file holds, on the terminal or as JSON.
+/// Names what the file holds. With `--json` the keys of the report also stand beside those of every command.
 pub(super) fn run(args: &IdentifyArgs, table: &KnotTable) -> Result<ExitCode, CliError> {
     let (report, text) = look(args, table)?;
-    let text = if args.json {
-        let json = serde_json::to_string_pretty(&report);
-        json.map_err(|e| CliError::Step(e.to_string()))? + "\n"
-    } else {
-        text
-    };
+    report.warnings.iter().for_each(output::warning);
+    let finding = serde_json::to_value(&report).map_err(|e| CliError::Step(e.to_string()))?;
+    output::beside(&finding);
+    output::data("finding", finding);
     super::print(&text);
     Ok(exit_code(&report))
 }

@@ -1,5 +1,6 @@
 //! `topo knot list` and `show`: what the table knows.
 
+use serde_json::{Value, json};
 use std::fmt::Write as _;
 use topo_knots::{Chirality, KnotEntry, KnotTable};
 
@@ -65,6 +66,17 @@ pub(super) fn entry(knot: &KnotEntry) -> String {
         let _ = writeln!(text, "{:21} {}", "also started from", word(other));
     }
     text
+}
+
+/// All of one knot for programs.
+pub(super) fn facts(knot: &KnotEntry) -> Value {
+    json!({
+        "name": knot.name, "aliases": knot.aliases, "crossing_number": knot.crossing_number, "chirality": chirality(knot),
+        "braid": knot.braid, "other_braids": knot.other_braids, "alexander": knot.invariants.alexander_text(),
+        "determinant": knot.invariants.determinant, "signature": knot.invariants.signature,
+        "jones": knot.jones.as_ref().map(|jones| jones.text()), "length_over_radius": knot.length_over_radius,
+        "source": knot.source,
+    })
 }
 
 fn chirality(knot: &KnotEntry) -> &'static str {

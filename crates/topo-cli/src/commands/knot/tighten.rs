@@ -4,6 +4,7 @@ use super::table::{self, Row};
 use crate::cli::TightenArgs;
 use crate::error::CliError;
 use crate::interrupt;
+use crate::output;
 use rayon::prelude::*;
 use serde_json::json;
 use std::path::Path;
@@ -19,6 +20,7 @@ pub(super) fn run(args: &TightenArgs, knots: &KnotTable) -> Result<(), CliError>
     let entries = entries(args, knots)?;
     let settings = settings(args);
     let folder = args.out.as_path();
+    output::out(folder);
     let cache = folder.join("cache");
     if args.fresh && cache.exists() {
         std::fs::remove_dir_all(&cache).map_err(|source| CliError::File {
@@ -42,7 +44,9 @@ pub(super) fn run(args: &TightenArgs, knots: &KnotTable) -> Result<(), CliError>
         .collect();
     let rows = made.into_iter().collect::<Result<Vec<Row>, _>>()?;
     let text = table::markdown(&rows);
-    write_atomic_bytes(&folder.join("table.md"), text.as_bytes()).map_err(KnotError::from)?;
+    let path = folder.join("table.md");
+    write_atomic_bytes(&path, text.as_bytes()).map_err(KnotError::from)?;
+    output::table(&path);
     say!("curves, certificates and table: {}", folder.display());
     Ok(())
 }
@@ -109,6 +113,7 @@ fn write(
         })),
     });
     let text = format!("{record:#}\n");
+    output::one_more("knots", &record);
     write_atomic_bytes(&path("json"), text.as_bytes()).map_err(KnotError::from)?;
     let mut line = format!(
         "{:8} {:5} vertices  L/r {length:9.4}",
@@ -135,6 +140,10 @@ fn write(
     }
     if !certificate.converged {
         line += "  NOT CONVERGED: the best curve is kept";
+        output::warning(&format!(
+            "{}: not converged, the best curve is kept",
+            tight.name
+        ));
     }
     Ok(line)
 }

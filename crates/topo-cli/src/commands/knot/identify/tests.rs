@@ -10,7 +10,6 @@ fn args(file: PathBuf) -> IdentifyArgs {
         closures: 20,
         frame: None,
         format: None,
-        json: false,
     }
 }
 

@@ -1,4 +1,4 @@
-//! `topo stability`: runs at the extremes, as tables, maps and a report.
+//! `topo extremes`: runs at the extremes, as tables, maps and a report.
 
 use std::time::Instant;
 
@@ -6,6 +6,7 @@ use super::settings::threads;
 use crate::cli::SystemsArgs;
 use crate::error::CliError;
 use crate::interrupt;
+use crate::output;
 use crate::progress::Progress;
 use topo_analysis::{read_table, write_table};
 use topo_lab::{StabilityRow, System, n_extremes, with_jobs};
@@ -18,6 +19,7 @@ pub fn run(args: &SystemsArgs) -> Result<(), CliError> {
     let jobs = threads(args.work.jobs)?;
     let stop = interrupt::install();
     let folder = args.work.out.join("stability");
+    output::out(&args.work.out);
     std::fs::create_dir_all(&folder).map_err(|source| CliError::File {
         path: folder.clone(),
         source,
@@ -52,7 +54,9 @@ pub fn run(args: &SystemsArgs) -> Result<(), CliError> {
             return Err(CliError::Interrupted);
         }
         progress.finish();
-        write_table(&folder.join(format!("{}.csv", system.name())), &rows)?;
+        let table = folder.join(format!("{}.csv", system.name()));
+        write_table(&table, &rows)?;
+        output::table(&table);
         let picture = stability::draw(&rows)?;
         for (extension, bytes) in [("png", &picture.png[..]), ("svg", picture.svg.as_bytes())] {
             data::write(
@@ -61,12 +65,16 @@ pub fn run(args: &SystemsArgs) -> Result<(), CliError> {
             )?;
         }
         let wall = format!("{:.0} s", start.elapsed().as_secs_f64());
-        say!("{}", stability::summary(system.name(), &rows, &wall));
+        let summary = stability::summary(system.name(), &rows, &wall);
+        output::one_more("summaries", &summary);
+        say!("{summary}");
         maps.push((system.name(), rows));
     }
     let report = stability::report(args.quality, &maps);
-    data::write(&folder.join("stability.md"), report.as_bytes())?;
-    say!("report: {}", folder.join("stability.md").display());
+    let path = folder.join("stability.md");
+    data::write(&path, report.as_bytes())?;
+    output::data("report", path.display().to_string());
+    say!("report: {}", path.display());
     // Rows carry where runs must converge.
     let broken: usize = maps.iter().map(|(_, rows)| stability::n_broken(rows)).sum();
     if broken > 0 {
