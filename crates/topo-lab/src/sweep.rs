@@ -7,6 +7,7 @@ mod mark;
 mod name;
 mod place;
 mod plan;
+mod row;
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -19,11 +20,12 @@ use crate::progress::{Event, SweepSettings, with_jobs};
 use plan::Plan;
 use topo_analysis::{Warnings, write_table};
 
-pub use experiment::{Experiment, Row};
+pub use experiment::Experiment;
 pub use failed::FailedCase;
 pub use name::CaseName;
 pub(crate) use name::value;
 pub use place::{About, CaseFolder, Place};
+pub use row::Row;
 
 /// What a sweep leaves behind.
 #[derive(Debug, Clone)]

@@ -4,19 +4,20 @@
 mod choice;
 mod difference;
 mod errors;
+mod grant;
 mod holds;
 mod pair;
 mod record;
 mod setting;
 mod table;
 
-pub use choice::Grant;
 pub(crate) use choice::{Load, grant};
 pub(crate) use difference::extrapolated;
-pub use errors::{ErrorRow, errors_of_colloids, errors_of_rods};
+pub use errors::{errors_of_colloids, errors_of_rods};
+pub use grant::{ErrorRow, Grant, Point};
 pub use holds::{CheckRow, Cover, check_estimates, factor_of_estimates};
 pub use record::{Factor, Measured, Record, Stamp, table_hash};
-pub use table::{Point, points};
+pub use table::points;
 
 use std::fmt;
 use std::marker::PhantomData;

@@ -2,8 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use super::experiment::{Experiment, Row};
+use super::experiment::Experiment;
 use super::failed::FailedCase;
+use super::row::Row;
 use super::{SweepReport, estimate, run};
 use crate::LabError;
 use crate::battery::{Checked, Stage, Sweep, Swept};

@@ -2,17 +2,14 @@
 
 use std::path::Path;
 
-use serde::Serialize;
-use serde::de::DeserializeOwned;
-
 use super::place::Place;
+use super::row::Row;
 use crate::battery::{Battery, Stage};
 use crate::cost::Cost;
 use crate::error::LabError;
 use crate::folder::Outcome;
 use crate::progress::{Event, SweepSettings};
 use crate::wish::{ErrorRow, Grant};
-use topo_analysis::Warnings;
 
 /// What a battery says so that its scenes can be swept, and their tables printed.
 ///
@@ -137,19 +134,5 @@ pub trait Experiment: Sync {
     /// Errors of the runs `rows`, beside those of the [coarser](Self::coarser) experiment.
     fn errors(&self, _grant: &Grant, _rows: &[Self::Row], _coarser: &[Self::Row]) -> Vec<ErrorRow> {
         Vec::new()
-    }
-}
-
-/// A row of a sweep's table, one column a field.
-pub trait Row: Serialize + DeserializeOwned + Clone + Send + Sync {
-    /// Processor seconds that it took.
-    fn cpu_seconds(&self) -> f64;
-
-    /// What is doubtful about it.
-    fn warnings(&self) -> &Warnings;
-
-    /// The row with the settings of another: finished cases of earlier programs may lack some.
-    fn with_settings_of(self, _blank: &Self) -> Self {
-        self
     }
 }

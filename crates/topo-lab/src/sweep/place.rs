@@ -7,8 +7,8 @@ use serde_json::{Map, Value, json};
 use topo_analysis::write_table;
 use topo_core::write_atomic_bytes;
 
-use super::experiment::Row;
 use super::name::value;
+use super::row::Row;
 use crate::LabError;
 use crate::battery::Battery;
 use crate::folder::{Outcome, digests, forget_file, make_folder};

@@ -1,7 +1,8 @@
 //! What of a scene is finished, what is computed now, in which order, and what that will take.
 
-use super::experiment::{Experiment, Row};
+use super::experiment::Experiment;
 use super::mark;
+use super::row::Row;
 use crate::LabError;
 use crate::cost::{Estimate, Speed, estimate, threads};
 use crate::folder::{Earlier, finished};

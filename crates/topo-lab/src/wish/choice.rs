@@ -1,37 +1,9 @@
 //! Which measured setting grants a wish.
 
-use serde::Serialize;
-
 use super::Wish;
+use super::grant::{Grant, Point};
 use super::record::Measured;
-use super::table::Point;
 use crate::cost::EFFICIENCY;
-
-/// A wish with the setting that grants it.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Grant {
-    /// What was asked for.
-    pub wish: Wish,
-    /// The setting and what was measured of it.
-    pub point: Point,
-    /// What its resolution counts, such as `edges`.
-    pub unit: &'static str,
-    /// Factor of the estimates.
-    pub scale: f64,
-    /// Why the table does not speak of the present code, if it does not.
-    pub stale: Option<String>,
-    /// Processor seconds expected, the runs included that tell the error.
-    pub cpu_seconds: f64,
-}
-
-impl Grant {
-    /// Estimate of the relative error of a run of which a coarser one tells so much; without that nothing is known, and it is
-    /// one.
-    pub(super) fn estimate(&self, told: Option<f64>) -> f64 {
-        let raw = self.point.raw_estimate(told);
-        raw.map_or(1.0, |raw| self.scale * raw)
-    }
-}
 
 /// Estimates without a recorded factor: what is doubled is seldom too small.
 const UNKNOWN_SCALE: f64 = 2.0;

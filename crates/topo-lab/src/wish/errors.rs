@@ -1,28 +1,9 @@
 //! What a run says of its own error: a coarser run beside it, and the measured table.
 
-use serde::{Deserialize, Serialize};
-
-use super::Grant;
 use super::difference::told;
+use super::grant::{ErrorRow, Grant};
 use topo_analysis::NematicRow;
 use topo_analysis::SweepRow;
-
-/// The last discharge time of a case with an estimate of its error.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct ErrorRow {
-    /// Which case.
-    pub case: String,
-    /// Place of the cut, s/L; empty for a colloid.
-    pub cut: Option<f64>,
-    /// Which time.
-    pub quantity: String,
-    /// The time; empty if the run did not come so far.
-    pub result: Option<f64>,
-    /// The same of the coarser run.
-    pub coarser: Option<f64>,
-    /// Estimate of the relative error of the result.
-    pub relative_error: Option<f64>,
-}
 
 /// Errors of the discharges `rows`, beside coarser ones of the same cuts.
 ///

@@ -4,8 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use super::Wish;
 use super::choice::{Load, choose};
+use super::grant::Point;
 use super::pair::{Measurement, cases};
-use super::table::Point;
 use crate::system::System;
 use crate::tradeoff::TradeoffRow;
 use topo_analysis::quantile;

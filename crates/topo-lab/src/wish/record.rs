@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::table::Point;
+use super::grant::Point;
 use crate::elastic;
 use crate::nematic;
 use crate::system::System;

@@ -1,58 +1,11 @@
 //! The measured table: what a resolution and a tolerance cost, and how far off they are.
 
-use serde::{Deserialize, Serialize};
-
+use super::grant::Point;
 use super::pair::{Measurement, cases, quantity};
 use super::setting::Setting;
 use crate::system::System;
 use crate::tradeoff::{TradeoffRow, ladder_of};
 use topo_analysis::{median, quantile};
-
-/// One setting, as measured over the cases of a trade-off in the time that wishes are about.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Point {
-    /// Edges of a rod, or the spacing of a colloid's grid in xi_N.
-    pub resolution: f64,
-    /// Tolerance of the local error.
-    pub tolerance: f64,
-    /// Median of the relative errors of the last time listed.
-    pub median_error: f64,
-    /// Their 90th percentile.
-    pub high_error: f64,
-    /// Mean processor seconds of a case, with the coarser run.
-    pub cpu_seconds: f64,
-    /// Most bytes of a case.
-    pub peak_bytes: u64,
-    /// Resolution of the coarser run beside it.
-    pub check_resolution: f64,
-    /// Tolerance of that run.
-    pub check_tolerance: f64,
-    /// Cases it was measured on.
-    pub n_cases: usize,
-}
-
-impl Point {
-    pub(super) fn setting(&self) -> Setting {
-        Setting {
-            fine: (self.resolution, self.tolerance),
-            coarse: (self.check_resolution, self.check_tolerance),
-        }
-    }
-
-    /// By how much it is finer than the coarser run.
-    pub(super) fn ratio(&self) -> f64 {
-        self.setting().ratio()
-    }
-
-    /// Estimate, up to the factor of the table, of the relative error of a run: what the coarser run tells, and no less than
-    /// a quarter of what nine cases of ten stay below. None where nothing is told.
-    pub(super) fn raw_estimate(&self, told: Option<f64>) -> Option<f64> {
-        told.map(|told| told.max(LEAST * self.high_error))
-    }
-}
-
-/// Least estimate, in 90th percentiles of the setting: two runs may agree by chance.
-const LEAST: f64 = 0.25;
 
 /// A coarser run should be coarser by more than this: differences to nearer ones are rather those of how a sphere falls on the
 /// lattice, or of ties of contacts.
