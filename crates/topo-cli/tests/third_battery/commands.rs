@@ -5,12 +5,11 @@ use std::path::{Path, PathBuf};
 use std::process::Child;
 use std::time::{Duration, Instant};
 
-use topo_core::Interrupt;
 use topo_lab::Battery;
 
 use crate::battery::Unwinding;
 use crate::fibre::time_of;
-use crate::program::{BATTERIES, Desk, cases, done, program, refused, table, text};
+use crate::program::{Desk, cases, done, program, refused, table, text};
 
 const SCENE: &str = "[unwinding]\nlength = [10, 20]\nturn = { from = -1, to = 3, n = 2 }\n";
 /// Cases of a few tenths of a second.
@@ -190,20 +189,16 @@ fn sweeps_of_a_third_battery_are_drawn() {
     let desk = Desk::new(SCENE);
     desk.run("out", &[]);
     let folder = desk.folder("out");
-    let found = topo_view::folder::find(&folder, &BATTERIES).unwrap();
-    let made = topo_view::folder::draw(&found, &Interrupt::new(), &|_| {}).unwrap();
-    assert!(
-        made.drawn[0].contains("a straight fibre, 4 discharges"),
-        "{:?}",
-        made.drawn
-    );
+    let said = done(&["figures", folder.to_str().unwrap()]);
+    let said = text(&said.stdout);
+    assert!(said.contains("a straight fibre, 4 discharges"), "{said}");
     for name in ["over-length", "over-turn", "curves"] {
         for extension in ["csv", "svg", "png"] {
             let path = folder.join(format!("figures/{name}.{extension}"));
-            assert!(path.exists(), "{path:?} of {:?}", made.files);
+            assert!(path.exists(), "{path:?}: {said}");
         }
     }
-    assert!(made.page.exists());
+    assert!(folder.join("figures/index.html").exists());
 }
 
 /// A battery of a crate of its own is one line in a program's list: nothing else in the workspace knows of this one.
