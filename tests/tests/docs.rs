@@ -209,3 +209,40 @@ fn docs_with_rust_are_compiled() {
     }
     assert!(n > 0, "README.md has no program any more");
 }
+
+/// CONTRIBUTING names files and crates that are there: a path from the root, or the end of the path of a source file.
+#[test]
+fn contributing_names_only_existing_files() {
+    let text = fs::read_to_string(root().join("CONTRIBUTING.md")).unwrap();
+    let sources = sources();
+    let is_there = |name: &str| {
+        let end = format!("/{name}");
+        root().join(name).exists()
+            || sources
+                .iter()
+                .any(|(p, _)| p.display().to_string().ends_with(&end))
+    };
+    let is_path = |s: &&str| {
+        let has_ending = [".rs", ".toml", ".md"].iter().any(|end| s.ends_with(end));
+        !s.contains(' ') && (s.contains('/') || has_ending)
+    };
+    let named: Vec<&str> = text.split('`').skip(1).step_by(2).filter(is_path).collect();
+    assert!(named.len() > 10, "{named:?}");
+    for name in named {
+        assert!(
+            is_there(name),
+            "CONTRIBUTING.md names {name}, which is not there"
+        );
+    }
+    let rows = text
+        .lines()
+        .filter_map(|l| l.strip_prefix("| `topo-")?.split_once('`'));
+    let listed: BTreeSet<String> = rows.map(|(name, _)| format!("topo-{name}")).collect();
+    let crates = fs::read_dir(root().join("crates")).unwrap();
+    let there = crates.map(|e| e.unwrap().file_name().into_string().unwrap());
+    assert_eq!(
+        listed,
+        there.collect(),
+        "the table of crates in CONTRIBUTING.md"
+    );
+}

@@ -3,6 +3,7 @@
 mod bench;
 mod cargo;
 mod ci;
+mod dependencies;
 mod determinism;
 mod fuzz;
 mod packages;

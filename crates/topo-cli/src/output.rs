@@ -71,8 +71,8 @@ pub fn failed(case: &FailedCase) {
 }
 
 /// Something that the reader of the results should know.
-pub fn warning(text: &String) {
-    note_that(|n| n.warnings.push(text.clone()));
+pub fn warning(text: impl Into<String>) {
+    note_that(|n| n.warnings.push(text.into()));
 }
 
 /// What a command finds, under a name of its own.

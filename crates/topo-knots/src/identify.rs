@@ -1,20 +1,18 @@
 //! Which knot of the table a closed or an open curve is.
 
-mod boxes;
+mod entry;
 mod kind;
 mod known;
 mod open;
-mod reduce;
 
 use crate::exact::segments_meet;
 use crate::invariant::{Diagram, kauffman, kauffman_of_name, least_crossing, usable_vertices};
+use crate::reduce::Reducer;
 use crate::{Invariants, Jones, KnotError, KnotTable, V};
 use known::{Found, candidates};
-use reduce::Reducer;
 
 use kind::LEAST_TRIVIAL_ALEXANDER;
 
-pub(crate) use kind::UNKNOWN;
 pub use kind::{Handedness, KnotType};
 pub use open::{OpenKnotType, identify_open};
 
@@ -46,18 +44,6 @@ pub fn identify(vertices: &[V], table: &KnotTable) -> Result<KnotType, KnotError
     let mut reducer = Reducer::default();
     reducer.load(&vertices, true);
     classify(&mut reducer, table, Care::Handed)
-}
-
-/// A closed curve of the same type with as few vertices as removing them one by one leaves.
-pub(crate) fn shortened(vertices: &[V]) -> Vec<V> {
-    let mut reducer = Reducer::default();
-    reducer.load(vertices, true);
-    reducer.reduce(true, &[]);
-    while reducer.x.len() < 3 {
-        // What is left of an unknot, or of a single point.
-        reducer.x.push(vertices[reducer.x.len()]);
-    }
-    reducer.x
 }
 
 /// How far to go in telling knots apart.

@@ -10,7 +10,7 @@ mod kauffman;
 mod passes;
 mod projection;
 
-use crate::identify::shortened;
+use crate::reduce::shortened;
 use crate::{KnotError, V};
 
 pub(crate) use coordinates::usable_vertices;
@@ -18,7 +18,7 @@ pub(crate) use diagram::Diagram;
 #[cfg(test)]
 pub(crate) use diagram::Visit;
 pub use jones::Jones;
-pub(crate) use kauffman::{kauffman, kauffman_of_name};
+pub(crate) use kauffman::{kauffman, kauffman_of_name, numbers};
 #[cfg(test)]
 pub(crate) use projection::one_view;
 pub(crate) use projection::{fibonacci_directions, least_crossing};

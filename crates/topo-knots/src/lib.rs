@@ -16,9 +16,11 @@ mod invariant;
 mod inversion;
 mod moebius;
 mod name;
+mod reduce;
 mod start_file;
 mod table;
 mod tighten;
+mod vector;
 
 pub use braid::{closed_braid, n_components, parse_braid};
 pub use curve_file::{
@@ -43,4 +45,4 @@ pub use tighten::{
 pub use topo_core::{Thickness, thickness, thickness_brute_force, windowed_half_distance};
 
 /// A point or vector in space.
-pub type V = nalgebra::Vector3<f64>;
+pub use vector::V;

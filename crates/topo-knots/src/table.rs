@@ -4,17 +4,22 @@ use std::borrow::Cow;
 use std::collections::{BTreeMap, HashSet};
 use std::path::Path;
 use std::sync::{LazyLock, OnceLock};
+use strsim::levenshtein;
 
 use crate::KnotError;
-use crate::identify::UNKNOWN;
 use crate::name::{self, Factor, KnotName};
 use include_dir::{Dir, include_dir};
 
 mod census;
+mod chirality;
 mod entry;
+mod file;
 
-pub(crate) use census::numbers;
-pub use entry::{Chirality, KnotEntry};
+pub use chirality::Chirality;
+pub use entry::KnotEntry;
+
+/// How the label of a knot begins that has no name.
+pub(crate) const UNKNOWN: &str = "unknown(";
 
 static BUILTIN: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/knots");
 
@@ -247,7 +252,7 @@ impl KnotTable {
             .filter(|(_, (_, mirrored))| !mirrored)
             .map(|(known, _)| known)
             .chain(self.census().map(|knot| &knot.name))
-            .map(|known| (edit_distance(name, known), known))
+            .map(|known| (levenshtein(name, known), known))
             .collect();
         near.sort();
         let near = near
@@ -344,22 +349,6 @@ impl KnotTable {
 
 fn is_toml(path: &Path) -> bool {
     path.extension().is_some_and(|e| e == "toml")
-}
-
-/// Number of letters to insert, delete or replace.
-pub(crate) fn edit_distance(a: &str, b: &str) -> usize {
-    let b: Vec<char> = b.chars().collect();
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, x) in a.chars().enumerate() {
-        let mut corner = row[0];
-        row[0] = i + 1;
-        for (j, y) in b.iter().enumerate() {
-            let replaced = corner + usize::from(x != *y);
-            corner = row[j + 1];
-            row[j + 1] = replaced.min(row[j] + 1).min(corner + 1);
-        }
-    }
-    row[b.len()]
 }
 
 #[cfg(test)]

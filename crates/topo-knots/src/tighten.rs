@@ -2,6 +2,7 @@
 
 mod augmented;
 mod certificate;
+mod check;
 mod constraints;
 mod hops;
 mod kick;
@@ -11,6 +12,7 @@ mod qp;
 mod search;
 mod second;
 mod settings;
+mod start;
 mod struts;
 
 pub use certificate::Certificate;
@@ -20,7 +22,7 @@ pub use struts::struts;
 
 use std::f64::consts::TAU;
 
-use rand::{RngExt, SeedableRng};
+use rand::SeedableRng;
 use rand_pcg::Pcg64;
 use serde::{Deserialize, Serialize};
 use topo_core::Polyline;
@@ -28,21 +30,15 @@ use topo_core::Polyline;
 use crate::inversion::inverted;
 use crate::moebius::relax_moebius;
 use crate::{Invariants, KnotEntry, KnotError, closed_braid, mirror_name, thickness};
+use check::check_type;
 use level::{LOOSE_REACH, Level, NEAR_REACH, Outcome, tighten_level};
+use start::{MOEBIUS_EDGES, MOEBIUS_STEPS, padded, stabilised};
 use topo_core::CpuClock;
-
-/// Edges, with more if the type was not kept, and steps of the descent of the Moebius energy that gives the second start.
-const MOEBIUS_EDGES: [usize; 2] = [320, 700];
-const MOEBIUS_STEPS: usize = 120;
-/// Cancelling pairs of generators put into a word to vary its embedding.
-const N_PADS: usize = 2;
 
 /// Random words that keep the number of strands; further ones get more.
 const N_PADDED: usize = 2;
 /// Vertices per unit of ropelength of the curve that is inverted.
 const LEAST_PER_UNIT: f64 = 4.0;
-/// Generators up to which a word gets a further strand; more make long starts.
-const MOST_STRANDS: i32 = 4;
 /// Vertices per unit of ropelength above which a level starts from a curve that is nearly tight.
 const WELL_RESOLVED: f64 = 8.0;
 /// Vertices of the tight unknot: it is 2e-5 longer than the circle.
@@ -239,45 +235,6 @@ fn inversions(
     Ok(found)
 }
 
-/// The word with pairs of a generator and its inverse put in at random places: the same braid, embedded with detours.
-fn padded(word: &[i32], rng: &mut Pcg64) -> Vec<i32> {
-    let largest = word.iter().map(|g| g.abs()).max().unwrap_or(1);
-    let mut padded = word.to_vec();
-    for _ in 0..N_PADS {
-        let sign = if rng.random_bool(0.5) { 1 } else { -1 };
-        let generator = sign * rng.random_range(1..=largest);
-        let place = rng.random_range(0..=padded.len());
-        padded.splice(place..place, [generator, -generator]);
-    }
-    padded
-}
-
-/// The word after one to three of Markov's moves at random: a further strand, a conjugation, a cancelling pair.
-///
-/// The closure is the same knot, embedded in another way; a further strand often leads into a better basin.
-fn stabilised(word: &[i32], rng: &mut Pcg64) -> Vec<i32> {
-    let mut word = word.to_vec();
-    for k in 0..rng.random_range(1..=3) {
-        let turn = rng.random_range(0..word.len());
-        word.rotate_left(turn);
-        let largest = word.iter().map(|g| g.abs()).max().unwrap_or(1);
-        let sign = if rng.random_bool(0.5) { 1 } else { -1 };
-        let generator = sign * rng.random_range(1..=largest);
-        match if k == 0 { 0 } else { rng.random_range(0..3) } {
-            0 if largest < MOST_STRANDS => word.push(sign * (largest + 1)),
-            1 => {
-                word.insert(0, generator);
-                word.push(-generator);
-            }
-            _ => {
-                let place = rng.random_range(0..=word.len());
-                word.splice(place..place, [generator, -generator]);
-            }
-        }
-    }
-    word
-}
-
 /// Tightens a closed curve, given in one or more embeddings of the same knot type; the shortest result wins.
 ///
 /// The type is compared after each start, kick and level, so that a curve that passed through itself never wins.
@@ -388,29 +345,6 @@ fn refine(
 /// A tight curve at more vertices, smoothed: the spline sharpens some so much that the whole curve would have to grow.
 fn refined(curve: &Polyline, n: usize) -> Result<Polyline, KnotError> {
     Ok(curve.resampled(n)?.smoothed(2)?)
-}
-
-/// Refuses a curve whose invariants are not `kind`.
-fn check_type(
-    name: &str,
-    curve: &Polyline,
-    kind: &Invariants,
-    stage: &'static str,
-) -> Result<(), KnotError> {
-    let found = Invariants::of(curve.vertices())?;
-    if found == *kind {
-        return Ok(());
-    }
-    let found = format!(
-        "Alexander polynomial {}, signature {}",
-        found.alexander_text(),
-        found.signature
-    );
-    Err(KnotError::PassedThroughItself {
-        knot: name.to_owned(),
-        stage,
-        found,
-    })
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! The nematic battery: charge (patterned anchoring, relax) → release (switch the anchoring) → discharge.
 
 pub(crate) mod charge;
+pub(crate) mod charge_settings;
 mod charging;
 mod coupled_flow;
 pub(crate) mod discharge;

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::anchoring::{Anchoring, SurfacePattern};
 use crate::domain::{Kind, STEPS, SpecialCell, neighbour};
 use crate::{Grid, Material, Particle};
-use shares::{face_share, volume_share};
+use shares::{face_share, norm, volume_share};
 
 /// Shortest link to the surface, in spacings: shorter ones would only be stiffer, not more accurate.
 pub(crate) const SHORTEST_LINK: f64 = 0.2;
@@ -215,10 +215,6 @@ impl<'a> FreeParticle<'a> {
         cell.mass = volume.max(cell.weights.iter().sum::<f64>() / 6.0);
         Kind::Special(Box::new(cell))
     }
-}
-
-pub(crate) fn norm(v: [f64; 3]) -> f64 {
-    (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt()
 }
 
 #[cfg(test)]

@@ -310,7 +310,7 @@ impl<'a> Tracer<'a> {
 }
 
 fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
-    crate::boundary::norm(std::array::from_fn(|x| a[x] - b[x]))
+    crate::boundary::shares::norm(std::array::from_fn(|x| a[x] - b[x]))
 }
 
 /// Two passes of a (1, 2, 1)/4 filter, ends kept.

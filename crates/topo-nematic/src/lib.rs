@@ -34,13 +34,14 @@ mod vector;
 
 pub use anchoring::{Anchoring, DirectorTable, Plate, PlateDirector, SurfacePattern};
 pub use battery::NematicBattery;
-pub use battery::charge::{ChargeSettings, ChargedNematic};
+pub use battery::charge::ChargedNematic;
+pub use battery::charge_settings::ChargeSettings;
 pub use battery::discharge::{Discharge, DischargeSettings};
-pub use battery::final_state::{FinalSource, FinalState};
 pub use battery::hooks::{Phase, Progress, RunHooks};
 pub use battery::minimum::MinimumReport;
 pub use battery::record::{
-    ChargeReport, ChargeStop, FlowReport, NematicSample, PhaseReport, RunRecord,
+    ChargeReport, ChargeStop, FinalSource, FinalState, FlowReport, NematicSample, PhaseReport,
+    RunRecord,
 };
 pub use battery::switch::{SwitchSettings, SwitchTarget, SwitchedNematic};
 pub use boundary::{Boundary, FreeSurface};

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::boundary::norm;
+use crate::boundary::shares::norm;
 use crate::tensor::{is_ordered_above, largest_eigenvalue};
 use crate::{NematicState, Particle};
 

@@ -4,6 +4,7 @@ pub(crate) mod charge;
 pub(crate) mod cut;
 pub(crate) mod discharge;
 pub(crate) mod record;
+mod tips;
 
 use topo_core::{
     Polyline, Rkc2, RosenbrockW, Sample, Scheduled, Simulation, StepControl, StopReason,

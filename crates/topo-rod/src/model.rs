@@ -3,6 +3,7 @@
 mod account;
 mod expected;
 mod implicit;
+mod parts;
 
 pub use account::WorkAccount;
 
@@ -10,7 +11,6 @@ use std::cell::Cell;
 
 use nalgebra::Vector3;
 use topo_core::{Ledger, Model, Rejection};
-use topo_sparse::SparseError;
 
 use crate::contact::ContactPairs;
 use crate::energy::{At, Bend, ContactEnergy, EnergyTerm, Force, Stiffness, Stretch, Twist};
@@ -19,12 +19,10 @@ use crate::guard::{RiseBudget, certify, largest_displacement};
 use crate::newton::{NewtonMatrix, NewtonTwist};
 use crate::viscosity::{CentrelineViscosity, TwistViscosity};
 use crate::{Accuracy, Ends, Geometry, Guards, RodError, RodParameters, RodState, Tube};
-use account::Accepted;
 use expected::Expected;
-use implicit::Frozen;
+use parts::{Accepted, Frozen, unsolvable};
 
-/// Channels of dissipation, in the order of the ledger.
-pub(crate) const CHANNELS: [&str; 3] = ["viscosity", "twist_viscosity", "friction"];
+pub(crate) use parts::CHANNELS;
 
 /// Terms, mobility, guards and ledger of one rod.
 pub struct RodModel {
@@ -302,11 +300,6 @@ impl RodModel {
         }
         Ok(())
     }
-}
-
-fn unsolvable(error: SparseError, what: &'static str) -> Rejection {
-    tracing::debug!(%error, what, "matrix refused");
-    Rejection::Factorisation { what }
 }
 
 impl Model for RodModel {

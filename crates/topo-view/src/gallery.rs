@@ -5,16 +5,15 @@ use crate::error::ViewError;
 use crate::figures::Done;
 use crate::movies::Movie;
 use crate::plot::font;
-use crate::plot::text::escape;
 use crate::provenance::Provenance;
 use crate::reproduction::{self, Finding};
 use crate::viewer;
-use std::fmt::Write;
+use maud::{DOCTYPE, Markup, PreEscaped, html};
 use std::path::Path;
 use topo_lab::Preset;
 
 /// Looks of pages.
-pub(crate) const STYLE: &str = "
+const STYLE: &str = "
 :root{color-scheme:light dark;--ink:#1b1f24;--quiet:#5d6670;--line:#dde1e6;--ground:#fff;--card:#f7f8fa;--link:#0060a0}
 @media(prefers-color-scheme:dark){:root{--ink:#e8eaed;--quiet:#a0a8b2;--line:#343a42;--ground:#15181c;--card:#1d2127;--link:#7cc0f5}}
 *{box-sizing:border-box}body{margin:0;background:var(--ground);color:var(--ink);font:17px/1.5 'Source Sans 3',system-ui,sans-serif}
@@ -50,121 +49,121 @@ pub struct Page<'a> {
     pub provenance: &'a Provenance,
 }
 
-/// Link to the scene of a battery's table, where it was written.
-fn scene_link(results: &Path, table: &str) -> String {
+/// The file of the scene of a battery's table, where it was written.
+fn scene_of(results: &Path, table: &str) -> Option<String> {
     let battery = table.split('/').next().unwrap_or("");
     let file = format!("scenes/{battery}.toml");
-    if results.join(&file).exists() {
-        format!(", <a href=\"{file}\">scene</a>")
-    } else {
-        String::new()
-    }
+    results.join(&file).exists().then_some(file)
+}
+
+/// A page with title and style of all pages; `style` is added.
+pub(crate) fn document(title: &str, style: &str, content: &Markup) -> String {
+    let page = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width,initial-scale=1";
+                title { (title) }
+                style { (PreEscaped(font::style())) (PreEscaped(STYLE)) (PreEscaped(style)) }
+            }
+            body { main { h1 { (title) } (content) } }
+        }
+    };
+    page.into_string() + "\n"
 }
 
 fn page(results: &Path, shown: &Page<'_>, view: &str) -> String {
-    let Page {
-        done,
-        movies,
-        claims,
-        quality,
-        provenance,
-    } = *shown;
-    let mut html = format!(
-        "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\
-         <meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\
-         <title>Topological batteries: figures</title><style>{}{STYLE}{}</style></head><body><main>\n\
-         <h1>Topological batteries: figures</h1>\n\
-         <p>Knotted elastic fibres store energy when they are twisted and fused, and give it back when \
-         they are cut; nematic colloids store it in a patterned anchoring and give it back when that is \
-         switched off. {quality} quality; every number below is read from the tables beside this page.</p>\n<nav>",
-        font::style(),
-        viewer::STYLE
-    );
-    for (battery, label) in [("elastic", "Knots in 3D"), ("nematic", "Colloids in 3D")] {
-        if view.contains(&format!("id=\"view-{battery}\"")) {
-            add(
-                &mut html,
-                format_args!("<a href=\"#view-{battery}\">{label}</a> "),
-            );
+    let content = html! {
+        p {
+            "Knotted elastic fibres store energy when they are twisted and fused, and give it back when they are cut; nematic colloids \
+             store it in a patterned anchoring and give it back when that is switched off. " (shown.quality) " quality; every number \
+             below is read from the tables beside this page."
         }
-    }
-    if !claims.is_empty() {
-        html.push_str("<a href=\"#claims\">Claim by claim</a> ");
-    }
-    for d in done {
-        add(
-            &mut html,
-            format_args!(
-                "<a href=\"#{0}\">{1}</a> ",
-                d.figure.name,
-                escape(d.figure.title)
-            ),
-        );
-    }
-    for (m, _) in movies {
-        add(
-            &mut html,
-            format_args!("<a href=\"#{0}\">{1}</a> ", m.name, escape(m.title)),
-        );
-    }
-    html.push_str("<a href=\"#provenance\">Provenance</a></nav>\n");
-    for d in done {
-        let f = &d.figure;
-        add(
-            &mut html,
-            format_args!(
-                "<section id=\"{name}\"><h2>{title}</h2>\
-                 <a href=\"figures/{name}.svg\"><img alt=\"{alt}\" src=\"data:image/png;base64,{png}\"></a>\
-                 <p>{caption}</p><dl><dt>Published claim</dt><dd>{claim}</dd><dt>Found here</dt><dd>{finding}</dd></dl>\
-                 <p class=\"files\">Files: <a href=\"figures/{name}.svg\">SVG</a>, <a href=\"figures/{name}.png\">PNG</a>, \
-                 <a href=\"figures/{name}.csv\">numbers drawn</a>, <a href=\"{table}\">{table}</a>{scene}</p></section>\n",
-                name = f.name,
-                title = escape(f.title),
-                alt = escape(f.caption),
-                png = font::base64(&d.preview),
-                caption = escape(f.caption),
-                claim = escape(f.claim),
-                finding = escape(&d.finding),
-                table = f.table,
-                scene = scene_link(results, f.table),
-            ),
-        );
-    }
-    for (m, finding) in movies {
-        add(
-            &mut html,
-            format_args!(
-                "<section id=\"{name}\"><h2>{title}</h2><img alt=\"{alt}\" loading=\"lazy\" src=\"figures/{name}.png\">\
-                 <p>{caption}</p><dl><dt>Published claim</dt><dd>{claim}</dd><dt>Found here</dt><dd>{finding}</dd></dl>\
-                 <p class=\"files\">File: <a href=\"figures/{name}.png\">animated PNG</a>{scene}</p></section>\n",
-                name = m.name,
-                title = escape(m.title),
-                alt = escape(m.caption),
-                caption = escape(m.caption),
-                claim = escape(m.claim),
-                finding = escape(finding),
-                scene = scene_link(results, m.battery),
-            ),
-        );
-    }
-    html.push_str(&reproduction::section(claims));
-    html.push_str(view);
-    html.push_str("<section id=\"provenance\"><h2>Provenance</h2><table>");
-    for (key, value) in provenance.rows() {
-        add(
-            &mut html,
-            format_args!(
-                "<tr><td>{}</td><td>{}</td></tr>",
-                escape(key),
-                escape(&value)
-            ),
-        );
-    }
-    html.push_str("</table><p class=\"files\">All of it: <a href=\"provenance.json\">provenance.json</a></p></section>\n</main></body></html>\n");
-    html
+        (links(shown, view))
+        @for d in shown.done { (figure(results, d)) }
+        @for (m, finding) in shown.movies { (movie(results, m, finding)) }
+        (reproduction::section(shown.claims))
+        (PreEscaped(view))
+        section id="provenance" {
+            h2 { "Provenance" }
+            table {
+                @for (key, value) in shown.provenance.rows() { tr { td { (key) } td { (value) } } }
+            }
+            p.files { "All of it: " a href="provenance.json" { "provenance.json" } }
+        }
+    };
+    document("Topological batteries: figures", viewer::STYLE, &content)
 }
 
-fn add(html: &mut String, text: std::fmt::Arguments) {
-    // Writing to a string cannot fail.
-    let _ = html.write_fmt(text);
+/// Links to the parts of the page.
+fn links(shown: &Page<'_>, view: &str) -> Markup {
+    let views = [
+        ("view-elastic", "Knots in 3D"),
+        ("view-nematic", "Colloids in 3D"),
+    ];
+    let there = |(id, _): &&(&str, &str)| view.contains(&format!("id=\"{id}\""));
+    html! {
+        nav {
+            @for (id, label) in views.iter().filter(there) { a href={ "#" (id) } { (label) } " " }
+            @if !shown.claims.is_empty() { a href="#claims" { "Claim by claim" } " " }
+            @for d in shown.done { a href={ "#" (d.figure.name) } { (d.figure.title) } " " }
+            @for (m, _) in shown.movies { a href={ "#" (m.name) } { (m.title) } " " }
+            a href="#provenance" { "Provenance" }
+        }
+    }
+}
+
+fn figure(results: &Path, done: &Done) -> Markup {
+    let f = &done.figure;
+    let png = font::base64(&done.preview);
+    html! {
+        section id=(f.name) {
+            h2 { (f.title) }
+            a href={ "figures/" (f.name) ".svg" } {
+                img alt=(f.caption) src={ "data:image/png;base64," (png) };
+            }
+            (said(f.caption, f.claim, &done.finding))
+            p.files {
+                "Files: " a href={ "figures/" (f.name) ".svg" } { "SVG" } ", "
+                a href={ "figures/" (f.name) ".png" } { "PNG" } ", "
+                a href={ "figures/" (f.name) ".csv" } { "numbers drawn" } ", "
+                a href=(f.table) { (f.table) }
+                (scene_link(results, f.table))
+            }
+        }
+    }
+}
+
+fn movie(results: &Path, movie: &Movie, finding: &str) -> Markup {
+    let file = format!("figures/{}.png", movie.name);
+    html! {
+        section id=(movie.name) {
+            h2 { (movie.title) }
+            img alt=(movie.caption) loading="lazy" src=(file);
+            (said(movie.caption, movie.claim, finding))
+            p.files {
+                "File: " a href=(file) { "animated PNG" }
+                (scene_link(results, movie.battery))
+            }
+        }
+    }
+}
+
+fn scene_link(results: &Path, table: &str) -> Markup {
+    html! {
+        @if let Some(scene) = scene_of(results, table) { ", " a href=(scene) { "scene" } }
+    }
+}
+
+fn said(caption: &str, claim: &str, finding: &str) -> Markup {
+    html! {
+        p { (caption) }
+        dl {
+            dt { "Published claim" }
+            dd { (claim) }
+            dt { "Found here" }
+            dd { (finding) }
+        }
+    }
 }

@@ -1,11 +1,11 @@
 //! `cargo xtask ci`: what must pass before a change lands.
 
 use super::cargo::{cargo, step};
-use super::{packages, test};
+use super::{dependencies, packages, test};
 use crate::workspace::workspace;
 use std::path::PathBuf;
 use topo_cli::CliError;
-use topo_cli::say;
+use topo_cli::{note, say};
 
 pub fn run() -> Result<(), CliError> {
     let mut failed: Vec<String> = Vec::new();
@@ -36,6 +36,20 @@ pub fn run() -> Result<(), CliError> {
         cargo(&["package", "--workspace", "--no-verify", "--quiet"]),
     )?;
     check("packages build", packages::check(&target())?)?;
+    if let Some(command) = dependencies::declared_rust()? {
+        check("declared Rust version", command)?;
+    }
+    match dependencies::spelling() {
+        Some(command) => check("spelling", command)?,
+        None => note!("spelling: skipped, typos is not there (pip install typos)"),
+    }
+    let refused = dependencies::refused()?;
+    for line in &refused {
+        note!("{line}");
+    }
+    if !refused.is_empty() {
+        failed.push("dependencies".to_owned());
+    }
     let report = test::all(false)?;
     if !report.ok {
         failed.push("tests".to_owned());

@@ -77,7 +77,7 @@ pub fn run(args: &FiguresArgs, workspace: Option<&Path>) -> Result<(), CliError>
         say!("{name}: {}", d.finding);
     }
     for (warning, n) in &record.warnings {
-        output::warning(&format!("{warning} ({n})"));
+        output::warning(format!("{warning} ({n})"));
     }
     let page = results.join("index.html");
     output::data("page", page.display().to_string());

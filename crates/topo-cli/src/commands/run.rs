@@ -21,11 +21,12 @@ pub fn run(args: &RunArgs, batteries: &Batteries<'_>) -> Result<(), CliError> {
         keep_fields: args.fields,
         ..settings(&args.work)?
     };
-    let mut options = Options::default();
-    options.cuts = args.cuts.as_deref();
-    options.knots = args.knots.as_deref();
-    options.fields = args.fields;
-    options.wish = wish(args)?;
+    let options = Options {
+        cuts: args.cuts.as_deref(),
+        knots: args.knots.as_deref(),
+        fields: args.fields,
+        wish: wish(args)?,
+    };
     compute::scene(batteries, &args.scene, &options, &settings)
 }
 

@@ -30,7 +30,10 @@ pub fn scene(
     failures.add(swept.failed(), &folder);
     output::out(&folder);
     output::table(&folder.join("sweep.csv"));
-    swept.warnings().iter().for_each(output::warning);
+    swept
+        .warnings()
+        .iter()
+        .for_each(|w| output::warning(w.as_str()));
     for line in swept.lines() {
         say!("{line}");
     }

@@ -1,8 +1,11 @@
 //! Which columns of a table are the coordinates, and what the others are.
 
+use std::path::Path;
+
 use super::cells::{number, split};
-use super::fault::quoted;
+use super::fault::{fault_at, quoted};
 use super::rows::Rows;
+use crate::KnotError;
 
 /// Names of columns that are the same all along a curve at one time.
 const FRAMES: [&str; 6] = ["frame", "time", "step", "timestep", "snapshot", "cut"];
@@ -46,6 +49,46 @@ pub(super) struct Columns {
 }
 
 impl Columns {
+    /// Takes columns for frames or components whose value is another in every row for what they are: parameters along the curve.
+    pub(super) fn drop_parameters(&mut self, rows: &Rows) {
+        let repeats = |column: usize| {
+            rows.column(column)
+                .zip(rows.column(column).skip(1))
+                .any(|(a, b)| a == b)
+        };
+        let told = self.frames.iter().copied().chain(self.component);
+        let parameters: Vec<usize> = told.filter(|column| !repeats(*column)).collect();
+        let stays = |column: &usize| !parameters.contains(column);
+        self.frames.retain(stays);
+        self.component = self.component.filter(stays);
+        self.further.extend(parameters);
+        self.further.sort_unstable();
+    }
+
+    /// Refuses a further column that divides the rows into few blocks as a component would, under a name that does not tell.
+    pub(super) fn refuse_hidden_components(
+        &self,
+        path: &Path,
+        rows: &Rows,
+    ) -> Result<(), KnotError> {
+        for &column in &self.further {
+            let Some(row) = rows.second_block(column) else {
+                continue;
+            };
+            let name = self.name(column);
+            let value = rows
+                .column(column)
+                .nth(row)
+                .map_or_else(String::new, quoted);
+            let number = rows.iter().nth(row).map_or(0, |line| line.number);
+            let problem = format!(
+                "column {name} turns to {value} here: if it tells components name it `component`, if it tells times `frame`, else leave it out"
+            );
+            return Err(fault_at(path, number, &problem));
+        }
+        Ok(())
+    }
+
     /// The name of a column, or its number from 1.
     pub(super) fn name(&self, column: usize) -> String {
         let name = self.names.get(column).filter(|name| !name.is_empty());

@@ -1,12 +1,8 @@
 //! The rows of a table, and what single columns tell before it is read.
 
 use std::collections::HashSet;
-use std::path::Path;
 
 use super::cells::{is_missing, split};
-use super::columns::Columns;
-use super::fault::{fault_at, quoted};
-use crate::KnotError;
 
 /// Least number of rows of a block of equal cells that may be a component.
 const LEAST_BLOCK: usize = 3;
@@ -35,7 +31,7 @@ impl<'a> Rows<'a, '_> {
     }
 
     /// The cells of a column; empty where a row is too short.
-    fn column(&self, column: usize) -> impl Iterator<Item = &'a str> {
+    pub(super) fn column(&self, column: usize) -> impl Iterator<Item = &'a str> {
         let mut cells = Vec::new();
         self.iter().map(move |line| {
             split(line.text, &mut cells);
@@ -60,49 +56,9 @@ impl<'a> Rows<'a, '_> {
         n > 2
     }
 
-    /// Takes columns for frames or components whose value is another in every row for what they are: parameters along the curve.
-    pub(super) fn drop_parameters(&self, columns: &mut Columns) {
-        let repeats = |column: usize| {
-            self.column(column)
-                .zip(self.column(column).skip(1))
-                .any(|(a, b)| a == b)
-        };
-        let told = columns.frames.iter().copied().chain(columns.component);
-        let parameters: Vec<usize> = told.filter(|column| !repeats(*column)).collect();
-        let stays = |column: &usize| !parameters.contains(column);
-        columns.frames.retain(stays);
-        columns.component = columns.component.filter(stays);
-        columns.further.extend(parameters);
-        columns.further.sort_unstable();
-    }
-
-    /// Refuses a further column that divides the rows into few blocks as a component would, under a name that does not tell.
-    pub(super) fn refuse_hidden_components(
-        &self,
-        path: &Path,
-        columns: &Columns,
-    ) -> Result<(), KnotError> {
-        for &column in &columns.further {
-            let Some(row) = self.second_block(column) else {
-                continue;
-            };
-            let name = columns.name(column);
-            let value = self
-                .column(column)
-                .nth(row)
-                .map_or_else(String::new, quoted);
-            let number = self.iter().nth(row).map_or(0, |line| line.number);
-            let problem = format!(
-                "column {name} turns to {value} here: if it tells components name it `component`, if it tells times `frame`, else leave it out"
-            );
-            return Err(fault_at(path, number, &problem));
-        }
-        Ok(())
-    }
-
     /// The row where the second block of equal cells begins, if the column is made of such blocks, each of three rows or more and of
     /// another value.
-    fn second_block(&self, column: usize) -> Option<usize> {
+    pub(super) fn second_block(&self, column: usize) -> Option<usize> {
         let mut values = HashSet::new();
         let mut block: Option<(&str, usize)> = None;
         let mut second = None;

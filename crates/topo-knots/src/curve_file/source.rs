@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::fault::fault;
 use crate::KnotError;
-use crate::table::edit_distance;
+use strsim::levenshtein;
 
 /// Whether a path stands for the standard input.
 pub(super) fn is_standard_input(path: &Path) -> bool {
@@ -45,7 +45,7 @@ fn near(path: &Path) -> Option<String> {
     let names = entries
         .flatten()
         .filter_map(|e| e.file_name().into_string().ok());
-    let like = |name: &String| edit_distance(&asked, &name.to_lowercase());
+    let like = |name: &String| levenshtein(&asked, &name.to_lowercase());
     let best = names.map(|name| (like(&name), name)).min()?;
     (best.0 <= 1 + asked.chars().count() / 5).then_some(best.1)
 }

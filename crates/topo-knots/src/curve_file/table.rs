@@ -4,9 +4,9 @@ use std::path::Path;
 
 use super::cells::{NumberFault, is_missing, number, split};
 use super::columns::Columns;
+use super::component::{CurveComponent, FrameOf};
 use super::fault::{fault_at, quoted};
 use super::rows::{Line, Rows};
-use super::{CurveComponent, FrameOf};
 use crate::{KnotError, V};
 
 /// Reads the frames in a table whose columns are known or to be found from the rows.
@@ -28,8 +28,8 @@ pub(super) fn frames(
             fault_at(path, first.number, &problem)
         })?,
     };
-    rows.drop_parameters(&mut columns);
-    rows.refuse_hidden_components(path, &columns)?;
+    columns.drop_parameters(&rows);
+    columns.refuse_hidden_components(path, &rows)?;
     notes.extend(columns.note.take());
     if !columns.further.is_empty() && !columns.names.is_empty() {
         let names: Vec<String> = columns.further.iter().map(|k| columns.name(*k)).collect();

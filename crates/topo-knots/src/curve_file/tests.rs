@@ -1,4 +1,5 @@
 use super::*;
+use crate::V;
 use crate::closed_braid;
 use topo_core::Polyline;
 

@@ -4,10 +4,11 @@ use std::path::Path;
 
 use super::cells::{is_missing, number, split};
 use super::columns::{Columns, extended_names, header_names};
+use super::component::FrameOf;
 use super::fault::{fault_at, quoted};
 use super::rows::Line;
 use super::table::frames;
-use super::{FrameOf, text};
+use super::text;
 use crate::KnotError;
 
 /// Characters of a title that are kept as the name of a frame.

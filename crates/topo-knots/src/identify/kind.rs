@@ -4,12 +4,11 @@ use serde::{Deserialize, Serialize};
 
 use super::known::Candidate;
 use crate::name::{self, KnotName, UNKNOT};
+use crate::table::UNKNOWN;
 use crate::{Invariants, Jones};
 
 /// Fewest crossings of a knot other than the unknot whose Alexander polynomial is 1.
 pub(super) const LEAST_TRIVIAL_ALEXANDER: usize = 11;
-/// How the label of a knot begins that has no name.
-pub(crate) const UNKNOWN: &str = "unknown(";
 
 /// Which of a knot and its mirror image a curve is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]

@@ -4,9 +4,9 @@ use std::f64::consts::PI;
 
 use serde::{Deserialize, Serialize};
 
-use super::reduce::{Ray, Reducer};
 use super::{Care, KnotType, classify};
 use crate::invariant::{fibonacci_directions, usable_vertices};
+use crate::reduce::{Ray, Reducer};
 use crate::{KnotError, KnotTable, V};
 
 /// Radius of the sphere of closing points, in units of the radius of the curve.

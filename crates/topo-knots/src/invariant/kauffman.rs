@@ -14,7 +14,6 @@ use std::sync::LazyLock;
 use super::diagram::Diagram;
 use super::field::{add, inverse, mul, of, power, sub};
 use crate::name::KnotName;
-use crate::table::numbers;
 
 /// Most diagrams looked at on the way; more would take longer than a second.
 const MOST_DIAGRAMS: usize = 400_000;
@@ -273,6 +272,11 @@ impl Link {
         }
         None
     }
+}
+
+/// The integers of a cell.
+pub(crate) fn numbers<T: std::str::FromStr>(cell: &str) -> Option<Vec<T>> {
+    cell.split(' ').map(|number| number.parse().ok()).collect()
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 use std::sync::LazyLock;
 
 use crate::invariant::at_minus_one;
+use crate::invariant::numbers;
 use crate::{Chirality, Invariants, Jones, KnotEntry, name};
 
 static TEXT: &str = include_str!("../../data/primes.csv");
@@ -56,9 +57,4 @@ fn entry(line: &str) -> Option<KnotEntry> {
         source: None,
         start: None,
     })
-}
-
-/// The integers of a cell.
-pub(crate) fn numbers<T: std::str::FromStr>(cell: &str) -> Option<Vec<T>> {
-    cell.split(' ').map(|number| number.parse().ok()).collect()
 }

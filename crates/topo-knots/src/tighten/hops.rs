@@ -4,16 +4,15 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use topo_core::Polyline;
 
+use super::check::check_type;
 use super::kick::{kick, squeeze};
 use super::level::Outcome;
 use super::search::{KICK, NEAR_TIE, tighten_loose};
 use super::settings::TightenSettings;
-use super::{
-    Invariants, KnotEntry, KnotError, MOEBIUS_EDGES, MOEBIUS_STEPS, check_type, padded, stabilised,
-};
+use super::start::{MOEBIUS_EDGES, MOEBIUS_STEPS, padded, stabilised};
 use crate::inversion::inverted;
 use crate::moebius::relax_moebius;
-use crate::{closed_braid, thickness};
+use crate::{Invariants, KnotEntry, KnotError, closed_braid, thickness};
 
 /// Relative rise of the ropelength that is accepted once in e hops.
 const TEMPERATURE: f64 = 2e-3;

@@ -4,11 +4,12 @@ use rand::SeedableRng;
 use rand_pcg::Pcg64;
 use topo_core::Polyline;
 
+use super::check::check_type;
 use super::kick::{kick, squeeze};
 use super::level::{LOOSE_REACH, Level, Outcome, tighten_level};
 use super::settings::TightenSettings;
-use super::{Invariants, KnotError, check_type};
 use crate::thickness;
+use crate::{Invariants, KnotError};
 
 /// Amplitude of kicks in units of the thickness; below 1 strands cannot pass each other.
 pub(super) const KICK: f64 = 0.7;

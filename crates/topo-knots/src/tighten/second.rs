@@ -4,7 +4,8 @@ use serde::{Deserialize, Serialize};
 use topo_core::{CpuClock, Polyline};
 
 use super::augmented::settle;
-use super::{TightKnot, check_type, refined};
+use super::check::check_type;
+use super::{TightKnot, refined};
 use crate::{KnotError, thickness, thickness_brute_force};
 
 /// Vertices per unit of ropelength of the loosened start.

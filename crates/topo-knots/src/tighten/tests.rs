@@ -1,5 +1,6 @@
 //! Tight knots against published ropelengths and the writhe of ideal shapes.
 
+use super::start::N_PADS;
 use std::collections::BTreeMap;
 
 use rayon::prelude::*;

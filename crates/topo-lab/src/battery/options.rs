@@ -7,7 +7,6 @@ use crate::wish::Wish;
 
 /// What a command line says above a scene; a battery takes some of it and refuses the rest.
 #[derive(Debug, Clone, Copy, Default)]
-#[non_exhaustive]
 pub struct Options<'a> {
     /// Where to cut.
     pub cuts: Option<&'a str>,

@@ -1,9 +1,7 @@
 //! Charging: the nematic relaxes with a pattern on the particle.
 
-use serde::{Deserialize, Serialize};
-use topo_core::{InvalidValue, finite, in_range, positive};
-
 use super::NematicBattery;
+use super::charge_settings::ChargeSettings;
 use super::charging::Charging;
 use super::hooks::RunHooks;
 use super::record::{ChargeReport, ChargeStop};
@@ -12,57 +10,6 @@ use crate::memory::ByteAccount;
 use crate::{
     EnergyParts, NematicError, NematicState, OrderParameter, Particle, Ring, order_parameter, ring,
 };
-
-/// How a nematic is charged.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct ChargeSettings {
-    /// Tilts of the start fields, in radians: each is relaxed, and the state of least energy kept.
-    pub seeds: Vec<f64>,
-    /// Direction of the tilt, in radians from x.
-    pub seed_azimuth: f64,
-    /// Root mean square of the molecular field that counts as converged.
-    pub tolerance: f64,
-    /// Largest change of the order parameter over 25 steps that counts as converged.
-    pub order_tolerance: f64,
-    /// Relax on a grid of twice the spacing first. Faster, but a coarse grid may buckle where a fine one does not.
-    pub coarse_start: bool,
-    /// Limit of steps for each start field.
-    pub max_steps: u64,
-}
-
-impl Default for ChargeSettings {
-    fn default() -> Self {
-        Self {
-            seeds: vec![0.05],
-            seed_azimuth: 0.0,
-            tolerance: 1e-8,
-            order_tolerance: 1e-6,
-            coarse_start: false,
-            max_steps: 50_000,
-        }
-    }
-}
-
-impl ChargeSettings {
-    /// Checks every number.
-    ///
-    /// # Errors
-    /// Names the first value out of range and what would be right.
-    pub fn check(&self) -> Result<(), NematicError> {
-        if self.seeds.is_empty() {
-            return Err(InvalidValue::new("charge.seeds", 0.0, "one tilt at least").into());
-        }
-        for seed in &self.seeds {
-            finite("charge.seeds", *seed)?;
-        }
-        finite("charge.seed_azimuth", self.seed_azimuth)?;
-        positive("charge.tolerance", self.tolerance)?;
-        positive("charge.order_tolerance", self.order_tolerance)?;
-        in_range("charge.max_steps", self.max_steps as f64, 1.0, 1e15)?;
-        Ok(())
-    }
-}
 
 /// A charged battery: the relaxed nematic, and how it got there.
 #[derive(Debug, Clone)]

@@ -4,9 +4,9 @@ mod unfinished;
 
 use topo_core::CpuClock;
 
-use self::unfinished::{Best, Moving, Progressed, Unfinished};
+use self::unfinished::{Best, MOST_KICKS, Moving, Progressed, Unfinished};
 use super::NematicBattery;
-use super::charge::ChargeSettings;
+use super::charge_settings::ChargeSettings;
 use super::hooks::{Phase, Progress, RunHooks};
 use super::minimum::Check;
 use super::record::{ChargeReport, ChargeStop};
@@ -18,8 +18,6 @@ use crate::{NematicError, NematicState, order_parameter};
 
 /// Steps between looks at the order parameter.
 const CHECK_EVERY: u64 = 25;
-/// Most kicks along unstable modes.
-const MOST_KICKS: u32 = 4;
 const SCHEMA: &str = "nematic-charge/3";
 
 /// How a relaxation ended.

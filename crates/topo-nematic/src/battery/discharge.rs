@@ -6,8 +6,8 @@ mod progressing;
 use serde::{Deserialize, Serialize};
 use topo_core::{StopReason, finite, in_range, positive};
 
-use super::final_state::FinalState;
 use super::hooks::RunHooks;
+use super::record::FinalState;
 use super::record::RunRecord;
 use super::switch::SwitchedNematic;
 use crate::{FlowParameters, NematicError, NematicState, Precision};

@@ -1,47 +1,13 @@
 //! The state that a switched nematic relaxes to: released energy counts from there.
 
-use serde::{Deserialize, Serialize};
-
 use super::NematicBattery;
 use super::hooks::{Phase, Progress, RunHooks};
+use super::record::{FinalSource, FinalState};
 use super::switch::{SwitchTarget, SwitchedNematic, extend_into_cut_cells};
 use crate::kernel::run::Kernel;
 use crate::relax::Relaxation;
 use crate::tensor::uniaxial;
 use crate::{NematicError, NematicState};
-
-/// How the final state was found.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-#[non_exhaustive]
-pub enum FinalSource {
-    /// The uniform nematic along the plates' director is in equilibrium: F = 0.
-    Uniform,
-    /// The switched state, relaxed under the anchoring and field after the switch.
-    Relaxed,
-    /// As `Relaxed`, but the relaxation ended before it had converged: the energy is an upper bound.
-    Unconverged,
-}
-
-impl FinalSource {
-    /// As tables name it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Uniform => "uniform",
-            Self::Relaxed => "relaxed",
-            Self::Unconverged => "unconverged",
-        }
-    }
-}
-
-/// The state of equilibrium under the anchoring and field after a switch.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct FinalState {
-    /// Its energy, in L xi_N.
-    pub energy: f64,
-    /// How it was found.
-    pub source: FinalSource,
-}
 
 /// Root mean square of the molecular field below which a state is in equilibrium.
 const EQUILIBRIUM: f64 = 1e-8;

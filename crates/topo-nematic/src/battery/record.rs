@@ -68,6 +68,39 @@ impl ChargeReport {
     }
 }
 
+/// How the final state was found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum FinalSource {
+    /// The uniform nematic along the plates' director is in equilibrium: F = 0.
+    Uniform,
+    /// The switched state, relaxed under the anchoring and field after the switch.
+    Relaxed,
+    /// As `Relaxed`, but the relaxation ended before it had converged: the energy is an upper bound.
+    Unconverged,
+}
+
+impl FinalSource {
+    /// As tables name it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Uniform => "uniform",
+            Self::Relaxed => "relaxed",
+            Self::Unconverged => "unconverged",
+        }
+    }
+}
+
+/// The state of equilibrium under the anchoring and field after a switch.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct FinalState {
+    /// Its energy, in L xi_N.
+    pub energy: f64,
+    /// How it was found.
+    pub source: FinalSource,
+}
+
 /// The nematic at one output time of a discharge.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct NematicSample {

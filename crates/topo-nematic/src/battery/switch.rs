@@ -6,9 +6,10 @@ use serde::{Deserialize, Serialize};
 
 use super::NematicBattery;
 use super::charge::ChargedNematic;
-use super::final_state::FinalState;
+use super::record::FinalState;
 use crate::anchoring::{Anchoring, SurfacePattern};
-use crate::boundary::{FreeSurface, norm};
+use crate::boundary::FreeSurface;
+use crate::boundary::shares::norm;
 use crate::domain::{STEPS, SpecialCell, neighbour};
 use crate::kernel::run::{Kernel, Threads};
 use crate::model::Surface;

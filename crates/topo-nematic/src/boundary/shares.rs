@@ -45,7 +45,7 @@ pub(crate) fn face_share(centre: [f64; 3], axis: usize, h: f64, radius: f64) -> 
 
 /// Share outside a sphere of `radius` about the origin of the cube of edge `h` about `centre`.
 pub(crate) fn volume_share(centre: [f64; 3], h: f64, radius: f64) -> f64 {
-    let r = super::norm(centre);
+    let r = norm(centre);
     let half_diagonal = 0.5 * h * 3.0_f64.sqrt();
     if r > radius + half_diagonal {
         return 1.0;
@@ -62,6 +62,11 @@ pub(crate) fn volume_share(centre: [f64; 3], h: f64, radius: f64) -> f64 {
         }
     }
     (sum / (3 * N_SLICES) as f64).clamp(0.0, 1.0)
+}
+
+/// Length of a vector.
+pub(crate) fn norm(v: [f64; 3]) -> f64 {
+    (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt()
 }
 
 #[cfg(test)]

@@ -39,7 +39,7 @@ fn change_at(grid: &Grid, particle: Option<&Particle>, cell: usize, q: &Tensor5)
     let extent = grid.extent();
     let [x, y, z]: [f64; 3] = std::array::from_fn(|a| point[a] / extent[a]);
     let near = particle.map_or(1.0, |particle| {
-        let far = crate::boundary::norm(particle.offset(grid, point));
+        let far = crate::boundary::shares::norm(particle.offset(grid, point));
         (1.0 - particle.radius() / far.max(particle.radius())).max(0.0)
     });
     let profile = near * (PI * z).sin();

@@ -63,11 +63,11 @@ impl<T: Real> Kernel<T> {
         threads: Threads,
     ) -> Self {
         let coefficients = Coefficients::new(material, domain.grid.spacing(), &field);
+        let stride = component_stride(domain.grid.n_cells(), size_of::<T>());
         let second = material
             .second_elastic_constant
             .filter(|constant| *constant != 0.0)
-            .map(|constant| SecondElastic::new(&domain, constant));
-        let stride = component_stride(domain.grid.n_cells(), size_of::<T>());
+            .map(|constant| SecondElastic::new(&domain, constant, stride));
         Self {
             domain,
             material: *material,
@@ -169,6 +169,51 @@ impl<T: Real> Kernel<T> {
         };
         self.combine::<false, 0, false>(q, &what, h);
         self.add_second(q, 1.0, h);
+    }
+
+    /// Bytes of the lists of the second elastic constant.
+    pub(crate) fn n_second_bytes(&self) -> u64 {
+        self.second.as_ref().map_or(0, SecondElastic::n_bytes)
+    }
+
+    /// Passes that the second elastic constant took so far.
+    pub(crate) fn n_second_passes(&self) -> u64 {
+        self.second.as_ref().map_or(0, SecondElastic::n_passes)
+    }
+
+    /// Energy of the second elastic constant.
+    pub(crate) fn second_energy(&self, q: &[T]) -> f64 {
+        self.second.as_ref().map_or(0.0, |second| second.energy(q))
+    }
+
+    /// Adds `factor` times the molecular field of the second elastic constant to `out`.
+    pub(crate) fn add_second(&self, q: &[T], factor: f64, out: &mut [T]) {
+        if let Some(second) = &self.second {
+            second.add_field(q, factor, out);
+        }
+    }
+
+    /// Sums of the field in `h` and of `x` over the fluid, as the fused pass would have made them.
+    pub(crate) fn sums_of(&self, h: &[T], x: &[T]) -> Sums {
+        let mut sums = [0.0; 4];
+        let at = |a: &[T], cell: usize| -> Tensor5 {
+            std::array::from_fn(|c| a[c * self.stride + cell].into())
+        };
+        let mut add = |cell: usize, mass: f64| {
+            let (h, x) = (at(h, cell), at(x, cell));
+            let square = contract(&h, &h);
+            sums[0] += square;
+            sums[1] += contract(&h, &x);
+            sums[2] += contract(&x, &x);
+            sums[3] += mass * square;
+        };
+        for run in &self.domain.runs {
+            (run.start..run.start + run.length).for_each(|cell| add(cell as usize, 1.0));
+        }
+        for special in &self.domain.special {
+            add(special.cell as usize, special.mass);
+        }
+        sums
     }
 
     /// Writes the combination of `q`, its molecular field, `out` itself (if `OLD`) and the inputs to `out`; cells that are not

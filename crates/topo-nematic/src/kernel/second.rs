@@ -4,9 +4,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::domain::{Domain, neighbour};
-use crate::kernel::run::{Kernel, Sums};
 use crate::real::Real;
-use crate::tensor::{Tensor5, contract};
+use crate::tensor::Tensor5;
 
 /// The energy of div Q on the cells whose six neighbours are fluid.
 ///
@@ -19,6 +18,9 @@ use crate::tensor::{Tensor5, contract};
 #[derive(Debug, Clone)]
 pub(crate) struct SecondElastic {
     pub constant: f64,
+    /// Numbers from one component to the next.
+    stride: usize,
+    spacing: f64,
     /// Cells with a divergence, and their neighbours.
     inner: Vec<(u32, [u32; 6])>,
     /// 1/mass of each cell, 0 where there is no field.
@@ -28,7 +30,7 @@ pub(crate) struct SecondElastic {
 }
 
 impl SecondElastic {
-    pub(crate) fn new(domain: &Domain, constant: f64) -> Self {
+    pub(crate) fn new(domain: &Domain, constant: f64, stride: usize) -> Self {
         let grid = &domain.grid;
         let masses = domain.masses();
         let [nx, ny, nz] = grid.cells();
@@ -52,6 +54,8 @@ impl SecondElastic {
         }
         Self {
             constant,
+            stride,
+            spacing: grid.spacing(),
             inner,
             inverse_mass: masses
                 .iter()
@@ -68,27 +72,16 @@ impl SecondElastic {
     pub(crate) fn n_bytes(&self) -> u64 {
         (size_of_val(&self.inner[..]) + size_of_val(&self.inverse_mass[..])) as u64
     }
-}
 
-impl<T: Real> Kernel<T> {
-    /// Bytes of the lists of the second elastic constant.
-    pub(crate) fn n_second_bytes(&self) -> u64 {
-        self.second.as_ref().map_or(0, SecondElastic::n_bytes)
-    }
-
-    /// Passes that the second elastic constant took so far.
-    pub(crate) fn n_second_passes(&self) -> u64 {
-        let second = self.second.as_ref();
-        second.map_or(0, |s| s.n_passes.load(Ordering::Relaxed))
+    /// Passes so far.
+    pub(crate) fn n_passes(&self) -> u64 {
+        self.n_passes.load(Ordering::Relaxed)
     }
 
     /// Energy of the second elastic constant.
-    pub(crate) fn second_energy(&self, q: &[T]) -> f64 {
-        let Some(second) = &self.second else {
-            return 0.0;
-        };
-        second.count();
-        let sum: f64 = second
+    pub(crate) fn energy<T: Real>(&self, q: &[T]) -> f64 {
+        self.count();
+        let sum: f64 = self
             .inner
             .iter()
             .map(|(_, around)| {
@@ -96,15 +89,14 @@ impl<T: Real> Kernel<T> {
                 v[0] * v[0] + v[1] * v[1] + v[2] * v[2]
             })
             .sum();
-        0.5 * second.constant * self.domain.grid.spacing().powi(3) * sum
+        0.5 * self.constant * self.spacing.powi(3) * sum
     }
 
     /// Adds `factor` times its molecular field to `out`.
-    pub(crate) fn add_second(&self, q: &[T], factor: f64, out: &mut [T]) {
-        let Some(second) = &self.second else { return };
-        second.count();
-        let scale = factor * second.constant / (2.0 * self.domain.grid.spacing());
-        for (_, around) in &second.inner {
+    pub(crate) fn add_field<T: Real>(&self, q: &[T], factor: f64, out: &mut [T]) {
+        self.count();
+        let scale = factor * self.constant / (2.0 * self.spacing);
+        for (_, around) in &self.inner {
             let v = self.divergence(q, around);
             for axis in 0..3 {
                 // v depends on row `axis` of Q at both sides: the traceless symmetric part of v e_axis.
@@ -128,7 +120,7 @@ impl<T: Real> Kernel<T> {
                 }
                 for (link, sign) in [(2 * axis, 1.0), (2 * axis + 1, -1.0)] {
                     let cell = around[link] as usize;
-                    let scale = sign * scale * second.inverse_mass[cell];
+                    let scale = sign * scale * self.inverse_mass[cell];
                     for c in 0..5 {
                         let to = &mut out[c * self.stride + cell];
                         *to = T::of((*to).into() + scale * field[c]);
@@ -138,39 +130,16 @@ impl<T: Real> Kernel<T> {
         }
     }
 
-    fn divergence(&self, q: &[T], around: &[u32; 6]) -> [f64; 3] {
+    fn divergence<T: Real>(&self, q: &[T], around: &[u32; 6]) -> [f64; 3] {
         let at =
             |c: usize, link: usize| -> f64 { q[c * self.stride + around[link] as usize].into() };
         let step = |c: usize, axis: usize| at(c, 2 * axis + 1) - at(c, 2 * axis);
         let zz = -step(0, 2) - step(3, 2);
-        let scale = 0.5 / self.domain.grid.spacing();
+        let scale = 0.5 / self.spacing;
         [
             scale * (step(0, 0) + step(1, 1) + step(2, 2)),
             scale * (step(1, 0) + step(3, 1) + step(4, 2)),
             scale * (step(2, 0) + step(4, 1) + zz),
         ]
-    }
-
-    /// Sums of the field in `h` and of `x` over the fluid, as the fused pass would have made them.
-    pub(crate) fn sums_of(&self, h: &[T], x: &[T]) -> Sums {
-        let mut sums = [0.0; 4];
-        let at = |a: &[T], cell: usize| -> Tensor5 {
-            std::array::from_fn(|c| a[c * self.stride + cell].into())
-        };
-        let mut add = |cell: usize, mass: f64| {
-            let (h, x) = (at(h, cell), at(x, cell));
-            let square = contract(&h, &h);
-            sums[0] += square;
-            sums[1] += contract(&h, &x);
-            sums[2] += contract(&x, &x);
-            sums[3] += mass * square;
-        };
-        for run in &self.domain.runs {
-            (run.start..run.start + run.length).for_each(|cell| add(cell as usize, 1.0));
-        }
-        for special in &self.domain.special {
-            add(special.cell as usize, special.mass);
-        }
-        sums
     }
 }

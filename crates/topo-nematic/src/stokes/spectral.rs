@@ -1,7 +1,7 @@
 //! Flow between periodic sides: Fourier modes along x and y, a direct solve along z.
 
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use fearless_simd::{Level, Simd};
 use rayon::prelude::*;
@@ -12,10 +12,12 @@ use crate::vector::dispatch;
 use topo_fourier::{Complex64, LineFft, PlaneFft, PlaneScratch};
 
 use self::lanes::Lines;
+use self::planes::{Planes, lock};
 use self::symbol::Symbol;
 
 mod lanes;
 mod periodic;
+mod planes;
 mod plates;
 mod symbol;
 
@@ -249,23 +251,6 @@ impl Spectral {
     }
 }
 
-/// The tiles of one k_x, plane after plane.
-struct Planes<'a> {
-    tiles: &'a [Mutex<Vec<Complex64>>],
-    n_columns: usize,
-    column: usize,
-    /// Whether a plane has forces; else its tiles are stale.
-    forced: &'a (dyn Fn(usize) -> bool + Sync),
-    /// Whether a plane's velocities are wanted.
-    wanted: &'a (dyn Fn(usize) -> bool + Sync),
-}
-
-impl Planes<'_> {
-    fn tile(&self, k: usize) -> MutexGuard<'_, Vec<Complex64>> {
-        lock(&self.tiles[k * self.n_columns + self.column])
-    }
-}
-
 impl Source<'_> {
     /// Whether plane `k` has no force.
     fn is_empty(&self, k: usize) -> bool {
@@ -280,11 +265,6 @@ impl Source<'_> {
 fn take(next: &AtomicUsize, n: usize) -> Option<usize> {
     let job = next.fetch_add(1, Ordering::Relaxed);
     (job < n).then_some(job)
-}
-
-/// Nothing panics while it holds one of these locks, and numbers cannot be left half-written.
-fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Next plane that has sites, with the places where its values go.

@@ -3,10 +3,9 @@
 use serde::{Deserialize, Serialize};
 use topo_core::{Interrupt, Schedule, Scheduled, StopReason, positive};
 
-use super::cut::{CutCandidate, CutSite, cut_candidates};
 use super::record::{CurveRecorder, RunRecord, SampleRecorder, Scales};
 use super::{RodBattery, RodSimulation};
-use crate::{CutRod, Ends, RodError, RodModel, RodState, energy_density, smoothed_density};
+use crate::{Ends, RodError, RodModel, RodState, energy_density};
 
 /// How long a rod is charged and how often it is looked at.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -135,22 +134,5 @@ impl ChargedRod {
     /// How it was charged.
     pub fn record(&self) -> &RunRecord {
         &self.record
-    }
-
-    /// Sites within `share` of the largest smoothed density, largest first.
-    pub fn cut_candidates(&self, share: f64) -> Vec<CutCandidate> {
-        let l0 = self.state.rest_length();
-        cut_candidates(&smoothed_density(&self.density, l0, true), l0, share)
-    }
-
-    /// Cuts the rod.
-    ///
-    /// # Errors
-    /// A site that is not on the rod.
-    pub fn cut(&self, site: CutSite) -> Result<CutRod, RodError> {
-        match site {
-            CutSite::MaximumEnergyDensity => CutRod::new(self, self.cut_candidates(0.0)[0].at),
-            CutSite::At(at) => CutRod::new(self, at),
-        }
     }
 }

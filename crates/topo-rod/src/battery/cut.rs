@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::{ChargedRod, RodError, RodState};
+use crate::{ChargedRod, RodError, RodState, smoothed_density};
 
 /// How the site of a cut is chosen.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -88,20 +88,24 @@ impl CutRod {
             at: vertex as f64 / n as f64,
         })
     }
+}
 
-    /// Whether every pair of points near the two tips that only the seam keeps apart is more than `distance` apart, so that
-    /// the tips may from now on touch each other as strands do.
-    pub fn tips_have_parted(state: &RodState, distance: f64, window: f64) -> bool {
-        let (x, n) = (state.vertices(), state.n_vertices());
-        let reach = (window / state.rest_length()).ceil().min(n as f64) as usize;
-        let square = distance * distance;
-        (0..=reach.min(n - 1)).all(|i| {
-            (0..=(reach - i).min(n - 1)).all(|k| {
-                let j = n - 1 - k;
-                // a short rod: the pair is close along the rod itself
-                j <= i + 2 * reach || (x[i] - x[j]).norm_squared() > square
-            })
-        })
+impl ChargedRod {
+    /// Sites within `share` of the largest smoothed density, largest first.
+    pub fn cut_candidates(&self, share: f64) -> Vec<CutCandidate> {
+        let l0 = self.state().rest_length();
+        cut_candidates(&smoothed_density(self.density(), l0, true), l0, share)
+    }
+
+    /// Cuts the rod.
+    ///
+    /// # Errors
+    /// A site that is not on the rod.
+    pub fn cut(&self, site: CutSite) -> Result<CutRod, RodError> {
+        match site {
+            CutSite::MaximumEnergyDensity => CutRod::new(self, self.cut_candidates(0.0)[0].at),
+            CutSite::At(at) => CutRod::new(self, at),
+        }
     }
 }
 

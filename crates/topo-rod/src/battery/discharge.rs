@@ -6,6 +6,7 @@ use topo_core::{Interrupt, Ledger, Sample, Schedule, Scheduled, StopReason, in_r
 use super::RodSimulation;
 use super::cut::CutRod;
 use super::record::{CurveRecorder, RunRecord, SampleRecorder, Scales};
+use super::tips::tips_have_parted;
 use crate::{Ends, RodError, RodModel, RodState};
 
 /// How far a discharge is followed and how often it is looked at.
@@ -139,7 +140,7 @@ impl CutRod {
                 if elastic(s) <= goal {
                     return Some("released".to_owned());
                 }
-                has_parted = CutRod::tips_have_parted(s.state, tube.contact_diameter, window);
+                has_parted = tips_have_parted(s.state, tube.contact_diameter, window);
                 has_parted.then(|| "tips parted".to_owned())
             });
             if has_parted {

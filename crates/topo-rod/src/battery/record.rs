@@ -167,7 +167,7 @@ impl SampleRecorder {
             0.01,
         );
         let parted = !state.is_closed()
-            && super::cut::CutRod::tips_have_parted(
+            && super::tips::tips_have_parted(
                 state,
                 self.tube.contact_diameter,
                 pairs.window().outer(),

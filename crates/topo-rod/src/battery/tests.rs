@@ -7,7 +7,7 @@ use topo_core::Interrupt;
 
 use super::record::{PARTS, Scales};
 use super::*;
-use crate::{ChargeSettings, CutRod, Reading, cut_candidates};
+use crate::{ChargeSettings, Reading, cut_candidates};
 
 /// A right-handed trefoil on a torus; of tube, the thinner the torus the less.
 fn trefoil(minor: f64) -> Polyline {
@@ -114,7 +114,7 @@ fn corner(corner: usize, gap: f64) -> RodState {
 /// Tips have parted when all pairs that the seam kept apart by less than the window, 3 or six edges, are farther apart than d.
 #[test]
 fn val_tips_part_when_all_pairs_of_the_seam_are_apart() {
-    let parted = |state: &RodState, d: f64| CutRod::tips_have_parted(state, d, 3.0);
+    let parted = |state: &RodState, d: f64| super::tips::tips_have_parted(state, d, 3.0);
     for vertex in [0, 3, 6] {
         let state = corner(vertex, 0.9);
         assert!(!parted(&state, 0.95) && parted(&state, 0.85), "{vertex}");

@@ -3,9 +3,9 @@
 use nalgebra::Vector3;
 use topo_core::{Ledger, LinearlyImplicit, Rejection};
 
-use super::{CHANNELS, RodModel};
+use super::RodModel;
+use super::parts::CHANNELS;
 use crate::RodState;
-use crate::energy::Force;
 use crate::friction::friction_form;
 use crate::guard::RiseBudget;
 use crate::newton::NewtonTwist;
@@ -42,18 +42,6 @@ pub struct WorkAccount {
     pub friction_bytes: usize,
     /// Bytes held by matrices and factors of the centreline.
     pub matrix_bytes: usize,
-}
-
-/// What the ledger needs of the state accepted last.
-#[derive(Default)]
-pub(super) struct Accepted {
-    pub(super) stamp: Option<u64>,
-    pub(super) total: f64,
-    pub(super) cosine: Vec<f64>,
-    pub(super) couplings: Vec<(u32, u32, f64)>,
-    pub(super) force: Force,
-    pub(super) rate: Vec<f64>,
-    pub(super) rate_stamp: Option<u64>,
 }
 
 impl RodModel {

@@ -2,21 +2,9 @@
 
 use topo_core::{LinearlyImplicit, Model, Rejection, SpectralBound};
 
-use super::{At, RodModel, unsolvable};
+use super::parts::{Frozen, unsolvable};
+use super::{At, RodModel};
 use crate::RodState;
-
-/// The Newton matrix in use: made for which step length, and how often used.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Frozen {
-    g_dt: f64,
-    n_uses: usize,
-}
-
-impl Frozen {
-    pub(super) fn g_dt(&self) -> f64 {
-        self.g_dt
-    }
-}
 
 impl LinearlyImplicit for RodModel {
     fn prepare(&mut self, state: &RodState, g_dt: f64) -> Result<(), Rejection> {

@@ -4,7 +4,7 @@ use super::claim::Verdict;
 use super::{Finding, friction};
 use crate::data;
 use crate::error::ViewError;
-use crate::plot::text::escape;
+use maud::{Markup, html};
 use std::fmt::Write as _;
 use std::path::Path;
 use topo_analysis::write_table;
@@ -90,31 +90,32 @@ fn markdown(quality: Preset, findings: &[Finding]) -> String {
 }
 
 /// The claims for the gallery, readable on a narrow screen.
-pub fn section(findings: &[Finding]) -> String {
+pub fn section(findings: &[Finding]) -> Markup {
     if findings.is_empty() {
-        return String::new();
+        return html! {};
     }
-    let mut html = format!(
-        "<section id=\"claims\"><h2>Claim by claim</h2><p>{}. The numbers are read from the tables beside this page \
-         (<a href=\"reproduction.md\">as a table</a>, <a href=\"reproduction.json\">as JSON</a>).</p><ol class=\"claims\">",
-        summary(findings)
-    );
-    for f in findings {
-        let _ = write!(
-            html,
-            "<li value=\"{number}\"><p><b class=\"{class}\">{verdict}</b> {claim} <span class=\"files\">({published})</span></p>\
-             <p>{found}</p><p class=\"files\">Decided by: {rule}. Seen in <a href=\"#{figure}\">{figure}</a>. Depends on: {depends}.</p></li>",
-            number = f.number,
-            class = f.verdict.words().replace(' ', "-"),
-            verdict = f.verdict.words(),
-            claim = escape(f.claim),
-            published = escape(f.published),
-            found = escape(&said(f)),
-            rule = escape(f.rule),
-            figure = f.figure,
-            depends = escape(f.depends_on),
-        );
+    html! {
+        section id="claims" {
+            h2 { "Claim by claim" }
+            p {
+                (summary(findings)) ". The numbers are read from the tables beside this page ("
+                a href="reproduction.md" { "as a table" } ", " a href="reproduction.json" { "as JSON" } ")."
+            }
+            ol.claims {
+                @for f in findings {
+                    li value=(f.number) {
+                        p {
+                            b class=(f.verdict.words().replace(' ', "-")) { (f.verdict.words()) } " " (f.claim) " "
+                            span.files { "(" (f.published) ")" }
+                        }
+                        p { (said(f)) }
+                        p.files {
+                            "Decided by: " (f.rule) ". Seen in " a href={ "#" (f.figure) } { (f.figure) } ". Depends on: "
+                            (f.depends_on) "."
+                        }
+                    }
+                }
+            }
+        }
     }
-    html.push_str("</ol></section>\n");
-    html
 }

@@ -27,7 +27,7 @@ fn every_claim_is_looked_at_and_written() {
         rows.iter()
             .all(|r| r.replace("\\|", "").matches('|').count() == 9)
     );
-    let html = section(&all);
+    let html = section(&all).into_string();
     assert_eq!(html.matches("<li value").count(), all.len());
     for f in &all {
         let names = crate::figures::ALL.iter().map(|f| f.name);

@@ -21,7 +21,10 @@ const NOT_CERTAIN: u8 = 3;
 /// Names what the file holds. With `--json` the keys of the report also stand beside those of every command.
 pub(super) fn run(args: &IdentifyArgs, table: &KnotTable) -> Result<ExitCode, CliError> {
     let (report, text) = look(args, table)?;
-    report.warnings.iter().for_each(output::warning);
+    report
+        .warnings
+        .iter()
+        .for_each(|w| output::warning(w.as_str()));
     let finding = serde_json::to_value(&report).map_err(|e| CliError::Step(e.to_string()))?;
     output::beside(&finding);
     output::data("finding", finding);

@@ -140,7 +140,7 @@ fn write(
     }
     if !certificate.converged {
         line += "  NOT CONVERGED: the best curve is kept";
-        output::warning(&format!(
+        output::warning(format!(
             "{}: not converged, the best curve is kept",
             tight.name
         ));

@@ -2,12 +2,14 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::MOST_KICKS;
 use crate::NematicState;
 use crate::battery::NematicBattery;
 use crate::battery::hooks::MOST_COUNTED;
 use crate::battery::minimum::MinimumReport;
 use crate::relax::Clock;
+
+/// Most kicks along unstable modes.
+pub(super) const MOST_KICKS: u32 = 4;
 
 /// The best state so far.
 #[derive(Clone, Serialize, Deserialize)]

@@ -3,9 +3,10 @@
 use topo_core::{CpuClock, Rejection, Schedule, StepControl, StopReason};
 
 use super::super::coupled_flow::{CoupledFlow, CoupledMemory};
-use super::super::final_state::{FinalState, nothing};
+use super::super::final_state::nothing;
 use super::super::hooks::{Phase, Progress, RunHooks};
 use super::super::ramp::Ramp;
+use super::super::record::FinalState;
 use super::super::record::{NematicSample, PhaseReport, RunRecord};
 use super::super::switch::SwitchedNematic;
 use super::progressing::Progressing;

@@ -1,7 +1,7 @@
 //! Modes of a fully periodic box: each is algebraic.
 
-use super::Planes;
 use super::lanes::{Lines, N_LANES};
+use super::planes::Planes;
 use super::symbol::Symbol;
 use topo_fourier::{Complex64, LineFft};
 

@@ -1,7 +1,7 @@
 //! Modes between walls along z: a tridiagonal and a pentadiagonal solve.
 
-use super::Planes;
 use super::lanes::{Lane, Lines, N_LANES};
+use super::planes::Planes;
 use super::symbol::Symbol;
 use topo_fourier::Complex64;
 

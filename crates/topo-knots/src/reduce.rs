@@ -1,8 +1,10 @@
 //! Shortening a chain without changing its type: a vertex goes when nothing pierces the triangle with its neighbours.
 
-use super::boxes::{Aabb, EdgeBoxes};
+mod boxes;
+
 use crate::V;
 use crate::exact::{is_between, is_in_angle, is_pierced, volume};
+use boxes::{Aabb, EdgeBoxes};
 
 /// Rays from the ends of an open chain that no triangle may meet; none for a closed one.
 #[derive(Debug, Clone, Copy)]
@@ -199,6 +201,18 @@ impl Reducer {
                 && is_pierced(corners, &ray.from, &ray.to)
         })
     }
+}
+
+/// A closed curve of the same type with as few vertices as removing them one by one leaves.
+pub(crate) fn shortened(vertices: &[V]) -> Vec<V> {
+    let mut reducer = Reducer::default();
+    reducer.load(vertices, true);
+    reducer.reduce(true, &[]);
+    while reducer.x.len() < 3 {
+        // What is left of an unknot, or of a single point.
+        reducer.x.push(vertices[reducer.x.len()]);
+    }
+    reducer.x
 }
 
 #[cfg(test)]
