@@ -2,6 +2,8 @@
 
 mod find;
 mod page;
+#[cfg(test)]
+mod tests;
 
 use std::path::{Path, PathBuf};
 

@@ -183,7 +183,7 @@ fn frame(canvas: &mut Canvas, at: [f64; 2], size: [f64; 2]) {
 /// The report: what was run, where the edges are, and why runs stopped there.
 pub fn report(quality: Preset, maps: &[(&str, Vec<StabilityRow>)]) -> String {
     let mut text = format!(
-        "# Stability at the extremes\n\nMade by `{} stability`; the tables are \
+        "# Stability at the extremes\n\nMade by `{} extremes`; the tables are \
          `stability/{{rod,nematic,knots}}.csv`. Every run converges or stops with a named reason \
          within its budget, counted in steps.\n\n",
         program()
@@ -232,20 +232,27 @@ pub fn report(quality: Preset, maps: &[(&str, Vec<StabilityRow>)]) -> String {
     text
 }
 
-/// Reasons with their numbers left out, and how often each came.
+/// Reasons that differ in their numbers only, each once, with the numbers of its first run and how many runs it stopped.
 fn reasons(rows: &[&StabilityRow]) -> String {
-    let mut counts: Vec<(String, usize)> = Vec::new();
-    for row in rows.iter().filter(|r| !r.has_converged()) {
-        let words = row.reason.split_whitespace();
+    let kind = |reason: &str| -> Vec<String> {
+        let words = reason.split_whitespace();
         let words = words.filter(|w| !w.contains(|c: char| c.is_ascii_digit()));
-        let kind = words.collect::<Vec<_>>().join(" ");
-        match counts.iter_mut().find(|(k, _)| *k == kind) {
-            Some((_, n)) => *n += 1,
-            None => counts.push((kind, 1)),
+        words.map(str::to_owned).collect()
+    };
+    let mut counts: Vec<(Vec<String>, &str, usize)> = Vec::new();
+    for row in rows.iter().filter(|r| !r.has_converged()) {
+        let kind = kind(&row.reason);
+        match counts.iter_mut().find(|(k, ..)| *k == kind) {
+            Some((.., n)) => *n += 1,
+            None => counts.push((kind, &row.reason, 1)),
         }
     }
-    counts.sort_by_key(|(_, n)| std::cmp::Reverse(*n));
-    let all: Vec<String> = counts.iter().map(|(k, n)| format!("{k} ({n})")).collect();
+    counts.sort_by_key(|(.., n)| std::cmp::Reverse(*n));
+    let all = counts.iter().map(|(_, reason, n)| match n {
+        1 => format!("{reason} (1)"),
+        n => format!("such as {reason} ({n})"),
+    });
+    let all: Vec<String> = all.collect();
     all.join("; ").replace('|', "/")
 }
 
@@ -282,7 +289,12 @@ mod tests {
         ];
         assert_eq!(n_broken(&rows), 2);
         let report = report(Preset::Draft, &[("rod", rows.clone())]);
-        assert!(report.contains("step too small (2)"), "{report}");
+        // reasons of one kind are one, and keep their numbers
+        assert!(
+            report.contains("such as step 3e-9 too small (2)"),
+            "{report}"
+        );
+        assert!(!report.contains("4e-9 too small (1)"), "{report}");
         assert!(report.contains("1 of 2"), "{report}");
         let picture = draw(&rows).unwrap();
         assert!(picture.svg.contains("twist") && !picture.png.is_empty());

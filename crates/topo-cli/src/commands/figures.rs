@@ -24,6 +24,9 @@ pub fn run(args: &FiguresArgs, workspace: Option<&Path>) -> Result<(), CliError>
     let interrupt = interrupt::install();
     let results = args.work.out.as_path();
     output::out(results);
+    if args.as_is {
+        are_there(results, &chosen, &movies)?;
+    }
     let mut record = Provenance::collect(workspace, args.quality);
 
     let table = KnotTable::builtin_and(args.knots.as_deref())?;
@@ -80,6 +83,51 @@ pub fn run(args: &FiguresArgs, workspace: Option<&Path>) -> Result<(), CliError>
     output::data("page", page.display().to_string());
     say!("gallery: {}", page.display());
     failures.into_result()
+}
+
+/// Refuses to draw what has neither a table nor a finished case, before anything is done.
+fn are_there(results: &Path, figures: &[Figure], movies: &[Movie]) -> Result<(), CliError> {
+    let tables = figures.iter().map(|f| (f.name, f.table.to_owned()));
+    let of_movies = movies
+        .iter()
+        .map(|m| (m.name, format!("{}/sweep.csv", m.battery)));
+    let (there, lacking): (Vec<_>, Vec<_>) = tables
+        .chain(of_movies)
+        .partition(|(_, table)| is_there(&results.join(table)));
+    if lacking.is_empty() {
+        return Ok(());
+    }
+    let mut missing: Vec<String> = lacking
+        .iter()
+        .map(|(_, table)| results.join(table).display().to_string())
+        .collect();
+    missing.dedup();
+    let others = match &there[..] {
+        [] => String::new(),
+        some => {
+            let names: Vec<String> = some.iter().map(|(n, _)| format!("--only {n}")).collect();
+            format!(", or draw what is there with {}", names.join(" "))
+        }
+    };
+    Err(CliError::Argument {
+        key: "--as-is",
+        value: "given".to_owned(),
+        remedy: format!(
+            "not there, and nothing is computed: {}; leave --as-is out to compute it, name the folder by --out{others}",
+            missing.join(", ")
+        ),
+    })
+}
+
+/// Whether there is a table, or a finished case of which it can be made.
+fn is_there(table: &Path) -> bool {
+    let cases = || {
+        table
+            .parent()
+            .and_then(|folder| std::fs::read_dir(folder).ok())
+    };
+    let mut cases = cases().into_iter().flatten().flatten();
+    table.exists() || cases.any(|case| case.path().join("run.json").exists())
 }
 
 fn draw_figures(

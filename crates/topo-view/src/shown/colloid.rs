@@ -36,7 +36,11 @@ const SETTINGS: [Setting; 20] = [
     Setting::number("flow_alignment", "χ", "Flow alignment χ"),
     Setting::number("viscosity", "ηΓ", "Viscosity η Γ"),
     Setting::number("surface_order", "*S*_{surface}", "Order at surfaces *S*"),
-    Setting::number("field_anisotropy", "Δχ", "Anisotropy of the field"),
+    Setting::number(
+        "field_anisotropy",
+        "field anisotropy",
+        "Anisotropy of the field",
+    ),
     Setting::name("boundary", "Boundary", name),
     Setting::name("precision", "Precision", name),
     Setting::number("spacing", "*h*", "Spacing *h* / ξ_{N}"),
@@ -49,8 +53,8 @@ const RESULTS: [Quantity; 4] = [
         label: "Discharge time *t* / τ_{N}",
         columns: &[
             result("t50", "*t*_{50}", "Discharge time *t*_{50} / τ_{N}"),
-            column("t90", "*t*_{90}"),
-            column("t99", "*t*_{99}"),
+            result("t90", "*t*_{90}", "Discharge time *t*_{90} / τ_{N}"),
+            result("t99", "*t*_{99}", "Discharge time *t*_{99} / τ_{N}"),
             result("t999", "*t*_{99.9}", "Discharge time *t*_{99.9} / τ_{N}"),
         ],
         log: true,
@@ -81,7 +85,7 @@ const PARTS: [Quantity; 4] = [
         label: "Energy / *L*ξ_{N}",
         columns: &[
             column("energy", "*F*"),
-            column("dissipated_rotation", "turning"),
+            column("dissipated_rotation", "rotation"),
             column("dissipated_flow", "flow"),
         ],
         log: false,

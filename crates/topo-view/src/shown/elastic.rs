@@ -36,8 +36,8 @@ const RESULTS: [Quantity; 3] = [
         label: "Discharge time *t* / *T*_{0}",
         columns: &[
             result("t50", "*t*_{50}", "Discharge time *t*_{50} / *T*_{0}"),
-            column("t90", "*t*_{90}"),
-            column("t95", "*t*_{95}"),
+            result("t90", "*t*_{90}", "Discharge time *t*_{90} / *T*_{0}"),
+            result("t95", "*t*_{95}", "Discharge time *t*_{95} / *T*_{0}"),
             result("t99", "*t*_{99}", "Discharge time *t*_{99} / *T*_{0}"),
         ],
         log: true,
@@ -77,7 +77,7 @@ const PARTS: [Quantity; 3] = [
         label: "Dissipated / *E*_{0}",
         columns: &[
             column("dissipated_viscosity", "viscosity"),
-            column("dissipated_twist", "turning"),
+            column("dissipated_twist", "twist"),
             column("dissipated_friction", "friction"),
         ],
         log: false,

@@ -5,7 +5,7 @@ use super::groups::{Group, Groups, Look, others};
 use super::sheet::{self, Chart, Line, Scaling};
 use crate::error::ViewError;
 use crate::figures::Drawn;
-use crate::figures::series::Table;
+use crate::figures::series::{Table, bounds};
 use crate::guide::{Column, Quantity};
 
 /// Fewest names that are worth an axis where other settings are swept too.
@@ -94,8 +94,8 @@ impl Lines<'_> {
                 lines,
             }));
         }
-        let alone = quantity.columns.iter().filter_map(|c| Some((c, c.alone?)));
-        alone
+        alone(quantity, groups)
+            .into_iter()
             .filter_map(|(column, label)| {
                 let n = groups.len();
                 let lines: Vec<Line> = groups
@@ -114,12 +114,21 @@ impl Lines<'_> {
 
     fn axis(&self) -> (String, Scaling) {
         let setting = &self.x.setting;
-        let scaling = if self.x.is_numeric {
+        let scaling = if self.x.is_numeric && self.is_geometric() {
+            Scaling::Decades
+        } else if self.x.is_numeric {
             Scaling::Linear
         } else {
             Scaling::Names(self.x.values.iter().map(|v| self.x.say(v)).collect())
         };
         (setting.label.to_owned(), scaling)
+    }
+
+    /// Whether values are crowded at the lower end of an axis, as those of a geometric series are.
+    fn is_geometric(&self) -> bool {
+        let values = self.x.values.iter().filter_map(|v| v.parse::<f64>().ok());
+        let (low, high) = bounds(values);
+        self.x.values.len() > 2 && low > 0.0 && high >= 20.0 * low
     }
 
     /// The line of a column over the rows of a group, which is the k-th of n; `None` without a value.
@@ -168,6 +177,20 @@ impl Lines<'_> {
             self.table.row(&texts, &[x, mean, low, high]);
         }
         (!line.points.is_empty()).then_some(line)
+    }
+}
+
+/// The columns that have a panel of their own: the first and the last that were measured.
+fn alone<'a>(quantity: &'a Quantity, groups: &[Group<'_>]) -> Vec<(&'a Column, &'a str)> {
+    let is_measured = |column: &Column| {
+        let mut rows = groups.iter().flat_map(|g| &g.rows);
+        rows.any(|r| r.number(column.name).is_some())
+    };
+    let all = quantity.columns.iter().filter_map(|c| Some((c, c.alone?)));
+    let all: Vec<(&Column, &str)> = all.filter(|(c, _)| is_measured(c)).collect();
+    match &all[..] {
+        [first, .., last] => vec![*first, *last],
+        few => few.to_vec(),
     }
 }
 

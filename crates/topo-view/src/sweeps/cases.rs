@@ -107,14 +107,12 @@ impl Cases {
         };
         let known: BTreeSet<String> = rows.iter().map(|r: &Row| r.case().to_owned()).collect();
         let mut unfinished = Vec::new();
-        let mut there = BTreeSet::new();
         for place in folders(folder) {
             let name = file_name(&place);
             let is_begun = place.join("run.json").exists();
             if !is_begun && !has_checkpoint(&place) {
                 continue;
             }
-            there.insert(name.clone());
             if known.contains(&name) {
                 continue;
             }
@@ -129,7 +127,8 @@ impl Cases {
         } else {
             Vec::new()
         };
-        let lost = known.difference(&there).cloned().collect();
+        let is_lost = |name: &String| !folder.join(name).is_dir();
+        let lost = known.into_iter().filter(is_lost).collect();
         let swept = swept(&guide, &rows);
         Ok(Self {
             folder: folder.to_owned(),
@@ -265,4 +264,69 @@ fn is_grid(setting: &Setting, others: &[Swept], rows: &[Row]) -> bool {
     let mut sets = by_others.values();
     sets.next()
         .is_some_and(|first| first.len() > 1 && sets.all(|set| set == first))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::guide::{Curve, name};
+
+    const SETTINGS: [Setting; 4] = [
+        Setting::name("kind", "Kind", name),
+        Setting::number("load", "*F*", "Load *F*"),
+        Setting::number("size", "*R*", "Size *R*"),
+        Setting::number("place", "*s*", "Place *s*").following(),
+    ];
+
+    fn swept_of(text: &str) -> Vec<(String, Vec<String>, bool)> {
+        let curve = Curve {
+            file: "series.csv",
+            time: "time",
+            time_label: "Time",
+            energy: "energy",
+            full: "energy",
+            empty: None,
+            of: None,
+        };
+        let guide = Guide {
+            settings: &SETTINGS,
+            results: &[],
+            curve,
+            parts: &[],
+        };
+        let mut reader = csv::Reader::from_reader(text.as_bytes());
+        let rows: Vec<Row> = reader.deserialize().map(|r| Row(r.unwrap())).collect();
+        let found = swept(&guide, &rows).into_iter();
+        found
+            .map(|s| (s.setting.column.to_owned(), s.values, s.is_numeric))
+            .collect()
+    }
+
+    fn columns(text: &str) -> Vec<String> {
+        swept_of(text).into_iter().map(|s| s.0).collect()
+    }
+
+    #[test]
+    fn settings_with_several_values_are_swept() {
+        let found = swept_of("kind,load,size\na,10,1\nb,9.5,1\na,9.50,1.0\n");
+        let strings = |list: &[&str]| list.iter().map(|s| (*s).to_owned()).collect::<Vec<_>>();
+        assert_eq!(
+            found,
+            [
+                ("kind".to_owned(), strings(&["a", "b"]), false),
+                // by size, each number once however it is written
+                ("load".to_owned(), strings(&["9.5", "10"]), true),
+            ]
+        );
+    }
+
+    #[test]
+    fn what_follows_from_other_settings_is_not_swept() {
+        // a place for each load, and two for one of them
+        assert_eq!(columns("load,place\n1,0.1\n2,0.2\n2,0.3\n"), ["load"]);
+        // the same places for each load, and places alone
+        let grid = "load,place\n1,0.1\n1,0.2\n2,0.1\n2,0.2\n";
+        assert_eq!(columns(grid), ["load", "place"]);
+        assert_eq!(columns("load,place\n1,0.1\n1,0.2\n"), ["place"]);
+    }
 }

@@ -184,3 +184,23 @@ pub fn others<'a>(cases: &'a Cases, but: Option<&Swept>) -> Vec<&'a Swept> {
     let is_other = |s: &&Swept| but.is_none_or(|b| b.setting.column != s.setting.column);
     cases.swept.iter().filter(is_other).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn looks_of_a_legend_all_differ() {
+        let looks: Vec<Look> = (0..MOST_NAMED).map(Look::named).collect();
+        for (k, look) in looks.iter().enumerate() {
+            assert!(looks[..k].iter().all(|other| other != look), "{k}");
+        }
+    }
+
+    #[test]
+    fn picks_are_even_and_have_both_ends() {
+        assert_eq!(evenly(3, 9), [0, 1, 2]);
+        assert_eq!(evenly(238, 4), [0, 79, 158, 237]);
+        assert_eq!(evenly(5, 1), [0]);
+    }
+}

@@ -2,7 +2,7 @@
 
 use super::groups::{Key, Look};
 use crate::error::ViewError;
-use crate::figures::series::{bounds, labels, log_bounds, step};
+use crate::figures::series::{bounds, labels, line, log_bounds, step};
 use crate::plot::canvas::{Canvas, Picture};
 use crate::plot::panel::{Axis, Panel};
 use crate::plot::style::Style;
@@ -57,6 +57,8 @@ const LEFT: f64 = 54.0;
 const HEIGHT: f64 = 170.0;
 const TOP: f64 = 26.0;
 const FOOT: f64 = 46.0;
+/// More lines than these are drawn thin.
+const MANY: usize = 30;
 
 /// Width of a text, about.
 pub fn text_width(label: &str, size: f64) -> f64 {
@@ -181,10 +183,16 @@ impl Chart {
             x,
             y,
         };
-        panel.draw(canvas, Vec::new(), &[]);
+        // kuva draws no axes without data
+        let corners = [
+            (panel.x.range.0, panel.y.range.0),
+            (panel.x.range.1, panel.y.range.1),
+        ];
+        panel.draw(canvas, vec![line(corners.to_vec(), "none", 0.0)], &[]);
         if let Scaling::Names(names) = &self.x.1 {
             draw_names(names, &panel, canvas);
         }
+        let width = if self.lines.len() > MANY { 0.9 } else { 1.5 };
         let mut ends = Vec::new();
         for line in &self.lines {
             let place = |x: f64, y: f64| panel.place(x, y / power);
@@ -193,7 +201,7 @@ impl Chart {
                 canvas.line(place(*x, *low), place(*x, *high), &line.look.color, 1.0);
             }
             if line.is_joined {
-                polyline(canvas, &thinned(&points), &line.look, 1.5);
+                polyline(canvas, &thinned(&points), &line.look, width);
             }
             if line.is_marked {
                 points.iter().for_each(|p| mark(canvas, *p, &line.look));

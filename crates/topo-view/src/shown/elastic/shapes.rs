@@ -23,7 +23,8 @@ pub(super) const PICTURE: OwnPicture = OwnPicture {
 const MOST: usize = 60;
 /// Most shapes side by side.
 const ACROSS: usize = 9;
-const CELL: [f64; 2] = [66.0, 66.0];
+/// Sides of the squares that shapes fill, where there are at most so many.
+const SIDES: [(usize, f64); 3] = [(2, 180.0), (12, 100.0), (MOST, 66.0)];
 /// A line of text below a shape.
 const LINE: f64 = 14.0;
 
@@ -113,12 +114,14 @@ fn picture(
 ) -> Result<Drawn, ViewError> {
     let shapes = || cells.iter().map(|c| &c.shape);
     let scale = Scale::viridis_root(high_density(shapes()));
-    let unit = (CELL[0].min(CELL[1]) - 2.0) / widest(shapes());
+    let fitting = SIDES.iter().find(|(n, _)| cells.len() <= *n);
+    let side = fitting.map_or(66.0, |(_, side)| *side);
+    let unit = (side - 2.0) / widest(shapes());
     let across = 1 + cells.iter().map(|c| c.column).max().unwrap_or(0);
     let n_lines = 1 + cells.iter().map(|c| c.line).max().unwrap_or(0);
     let longest = cells.iter().map(|c| text_width(&c.label, 8.0));
     let longest = longest.fold(0.0, f64::max) + 6.0;
-    let (pitch, tall) = (CELL[0].max(longest.min(150.0)), CELL[1] + LINE);
+    let (pitch, tall) = (side.max(longest.min(150.0)), side + LINE);
     let left = names.iter().map(|(_, n)| text_width(n, 11.5) + 12.0);
     let left = left.fold(10.0, f64::max);
     let width = (left + pitch * across as f64 + 70.0).max(300.0);
@@ -126,25 +129,28 @@ fn picture(
     let mut canvas = Canvas::new(width, height + 6.0 + 10.5 * notes.len() as f64, 4.0);
     let images = cells
         .par_iter()
-        .map(|c| c.shape.image(&c.case, CELL, unit, canvas.zoom(), &scale))
+        .map(|c| {
+            c.shape
+                .image(&c.case, [side; 2], unit, canvas.zoom(), &scale)
+        })
         .collect::<Result<Vec<_>, _>>()?;
     let mut table = Table::new("case,s,x,y,z,energy_density");
     for (cell, image) in cells.iter().zip(&images) {
         let at = [
-            left + pitch * cell.column as f64 + 0.5 * (pitch - CELL[0]),
+            left + pitch * cell.column as f64 + 0.5 * (pitch - side),
             8.0 + tall * cell.line as f64,
         ];
-        canvas.image(at, CELL, image);
+        canvas.image(at, [side; 2], image);
         let style = Style::default().middle().size(8.0);
-        let below = at[1] + CELL[1] + 8.0;
-        canvas.text(at[0] + 0.5 * CELL[0], below, &cell.label, style);
+        let below = at[1] + side + 8.0;
+        canvas.text(at[0] + 0.5 * side, below, &cell.label, style);
         let curve = &cell.shape.curve;
         for ((s, p), e) in curve.s.iter().zip(&curve.points).zip(&curve.density) {
             table.row(&[&cell.case], &[*s, p.x, p.y, p.z, *e]);
         }
     }
     for (line, name) in names {
-        let y = 8.0 + tall * *line as f64 + 0.5 * CELL[1] + 4.0;
+        let y = 8.0 + tall * *line as f64 + 0.5 * side + 4.0;
         let style = Style::default().end().bold().size(11.5);
         canvas.text(left - 4.0, y, name, style);
     }
