@@ -45,10 +45,7 @@ pub(crate) fn charge(job: &CaseJob<'_>, interrupt: &Interrupt) -> Result<Charged
         tight,
         table,
     } = *job;
-    let refuse = |source| LabError::Rod {
-        case: scene.case_name(case),
-        source,
-    };
+    let refuse = |source| job.refused(source);
     let entry = table.get(&case.knot)?;
     let centreline = tight.centreline()?;
     let battery = RodBattery::new(&case.rod, &scene.accuracy, Guards::default(), &centreline);
@@ -98,10 +95,6 @@ pub(crate) fn run(
 ) -> Result<Option<Outcome<SweepRow>>, LabError> {
     let CaseJob { scene, case, .. } = *job;
     let (folder, interrupt) = (place.folder, &place.settings.interrupt);
-    let refuse = |source| LabError::Rod {
-        case: scene.case_name(case),
-        source,
-    };
     let clock = CpuClock::start();
     let ChargedCase {
         rod: charged,
@@ -134,10 +127,8 @@ pub(crate) fn run(
     if charged.record().report.stop.is_success() {
         for &at in &sites {
             let clock = CpuClock::start();
-            let discharge = charged
-                .cut(CutSite::At(at))
-                .and_then(|c| c.discharge(&scene.discharge, interrupt))
-                .map_err(refuse)?;
+            let discharge =
+                job.discharge(&charged, CutSite::At(at), &scene.discharge, interrupt)?;
             if interrupt.is_requested() {
                 return Ok(None);
             }
