@@ -30,21 +30,8 @@ pub fn tables(
     provenance: &mut Provenance,
 ) -> Result<Failures, CliError> {
     let scene = ElasticScene::published(order.quality);
-    let table = order.table;
     let mut failures = Failures::default();
-    provenance.presets.insert(
-        "Tolerance".to_owned(),
-        format!("{} h", scene.accuracy.tolerance),
-    );
-    provenance
-        .presets
-        .insert("Edges".to_owned(), scene.rod.n_edges.to_string());
-    provenance
-        .presets
-        .insert("Cuts".to_owned(), String::from(scene.cuts.clone()));
-    provenance
-        .presets
-        .insert("Seed".to_owned(), scene.seed.to_string());
+    note_presets(&scene, provenance);
     let settings = SweepSettings {
         jobs: order.jobs,
         fresh: order.fresh,
@@ -56,72 +43,114 @@ pub fn tables(
     topo_lab::writable(order.results)?;
     estimate::tell(&estimate::of_order(order, &settings)?);
     if order.knots && !order.as_is {
-        let start = Instant::now();
-        let names = scene.knots_used(table)?;
-        let more = more_knots(order.quality, &names, table);
-        let progress = Progress::start("knots", names.len() + more.len());
-        let told = |event: Event<'_>| {
-            if let Event::Knot { name, .. } = event {
-                progress.done(name);
-            }
-        };
-        let shapes = with_jobs(order.jobs, || {
-            let mut shapes =
-                tight_shapes(&names, table, &scene.tighten, order.results, stop, &told)?;
-            let standard = TightenSettings::standard();
-            let more = tight_shapes(&more, table, &standard, order.results, stop, &told)?;
-            shapes.extend(more);
-            Ok::<_, LabError>(shapes)
-        })??;
-        progress.finish();
-        interrupt::check(stop)?;
-        write_knots(&shapes, table, order.results)?;
-        provenance
-            .wall_seconds
-            .insert("knots".to_owned(), start.elapsed().as_secs_f64());
+        knots(order, &scene, stop, provenance)?;
     }
     if order.elastic {
-        let start = Instant::now();
-        let rods = Rods::of(&scene, table);
-        let swept = sweep(&rods, &settings)?;
-        failures.add(swept.failed(), &scene.results(order.results));
-        provenance.estimated("elastic sweep", swept.estimate(), swept.wall_seconds());
-        provenance
-            .wall_seconds
-            .insert("elastic sweep".to_owned(), start.elapsed().as_secs_f64());
-        let runs = format!(
-            "{} computed, {} reused",
-            swept.n_computed(),
-            swept.n_reused()
-        );
-        provenance.presets.insert("Elastic runs".to_owned(), runs);
-        let start = Instant::now();
-        for variant in scene.variants() {
-            let rods = Rods::of(&variant.scene, table);
-            let swept = sweep(&rods, &settings)?;
-            failures.add(swept.failed(), &variant.scene.results(order.results));
-        }
-        provenance
-            .wall_seconds
-            .insert("variants".to_owned(), start.elapsed().as_secs_f64());
+        elastic(order, &scene, &settings, provenance, &mut failures)?;
     }
     if order.nematic {
-        let start = Instant::now();
-        let scene = NematicScene::published(order.quality);
-        let swept = sweep(&scene, &settings)?;
-        failures.add(swept.failed(), &scene.results(order.results));
-        provenance.estimated("nematic sweep", swept.estimate(), swept.wall_seconds());
-        let radius = format!("radius {} ξ_N", scene.nematic.radius);
-        provenance.presets.insert("Colloid".to_owned(), radius);
-        let runs = format!(
-            "{} computed, {} reused",
-            swept.n_computed(),
-            swept.n_reused()
-        );
-        provenance.presets.insert("Nematic runs".to_owned(), runs);
-        provenance
-            .wall_seconds
-            .insert("nematic sweep".to_owned(), start.elapsed().as_secs_f64());
+        nematic(order, &settings, provenance, &mut failures)?;
     }
     Ok(failures)
+}
+
+fn note_presets(scene: &ElasticScene, provenance: &mut Provenance) {
+    for (name, value) in [
+        ("Tolerance", format!("{} h", scene.accuracy.tolerance)),
+        ("Edges", scene.rod.n_edges.to_string()),
+        ("Cuts", String::from(scene.cuts.clone())),
+        ("Seed", scene.seed.to_string()),
+    ] {
+        provenance.presets.insert(name.to_owned(), value);
+    }
+}
+
+fn note_time(name: &str, start: Instant, provenance: &mut Provenance) {
+    let seconds = start.elapsed().as_secs_f64();
+    provenance.wall_seconds.insert(name.to_owned(), seconds);
+}
+
+/// Tight shapes of all knots in the figures.
+fn knots(
+    order: &Order,
+    scene: &ElasticScene,
+    stop: &Interrupt,
+    provenance: &mut Provenance,
+) -> Result<(), CliError> {
+    let table = order.table;
+    let start = Instant::now();
+    let names = scene.knots_used(table)?;
+    let more = more_knots(order.quality, &names, table);
+    let progress = Progress::start("knots", names.len() + more.len());
+    let told = |event: Event<'_>| {
+        if let Event::Knot { name, .. } = event {
+            progress.done(name);
+        }
+    };
+    let shapes = with_jobs(order.jobs, || {
+        let mut shapes = tight_shapes(&names, table, &scene.tighten, order.results, stop, &told)?;
+        let standard = TightenSettings::standard();
+        let more = tight_shapes(&more, table, &standard, order.results, stop, &told)?;
+        shapes.extend(more);
+        Ok::<_, LabError>(shapes)
+    })??;
+    progress.finish();
+    interrupt::check(stop)?;
+    write_knots(&shapes, table, order.results)?;
+    note_time("knots", start, provenance);
+    Ok(())
+}
+
+/// The sweep of rods and its variants.
+fn elastic(
+    order: &Order,
+    scene: &ElasticScene,
+    settings: &SweepSettings,
+    provenance: &mut Provenance,
+    failures: &mut Failures,
+) -> Result<(), CliError> {
+    let start = Instant::now();
+    let rods = Rods::of(scene, order.table);
+    let swept = sweep(&rods, settings)?;
+    failures.add(swept.failed(), &scene.results(order.results));
+    provenance.estimated("elastic sweep", swept.estimate(), swept.wall_seconds());
+    note_time("elastic sweep", start, provenance);
+    let runs = format!(
+        "{} computed, {} reused",
+        swept.n_computed(),
+        swept.n_reused()
+    );
+    provenance.presets.insert("Elastic runs".to_owned(), runs);
+    let start = Instant::now();
+    for variant in scene.variants() {
+        let rods = Rods::of(&variant.scene, order.table);
+        let swept = sweep(&rods, settings)?;
+        failures.add(swept.failed(), &variant.scene.results(order.results));
+    }
+    note_time("variants", start, provenance);
+    Ok(())
+}
+
+/// The sweep of colloids.
+fn nematic(
+    order: &Order,
+    settings: &SweepSettings,
+    provenance: &mut Provenance,
+    failures: &mut Failures,
+) -> Result<(), CliError> {
+    let start = Instant::now();
+    let scene = NematicScene::published(order.quality);
+    let swept = sweep(&scene, settings)?;
+    failures.add(swept.failed(), &scene.results(order.results));
+    provenance.estimated("nematic sweep", swept.estimate(), swept.wall_seconds());
+    let radius = format!("radius {} ξ_N", scene.nematic.radius);
+    provenance.presets.insert("Colloid".to_owned(), radius);
+    let runs = format!(
+        "{} computed, {} reused",
+        swept.n_computed(),
+        swept.n_reused()
+    );
+    provenance.presets.insert("Nematic runs".to_owned(), runs);
+    note_time("nematic sweep", start, provenance);
+    Ok(())
 }

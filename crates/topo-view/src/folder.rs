@@ -1,11 +1,14 @@
 //! Pictures of whatever a folder of results holds: a sweep of any battery, or several of them, with a page that shows them.
 
+mod drawn;
 mod find;
 mod page;
 #[cfg(test)]
 mod tests;
 
 use std::path::{Path, PathBuf};
+
+use drawn::{DrawnSweep, Shot};
 
 use crate::data;
 use crate::error::{ViewError, check};
@@ -31,25 +34,6 @@ pub struct Made {
     pub failed: Vec<FailedCase>,
     /// What was not drawn or is not there, and why.
     pub notes: Vec<String>,
-}
-
-/// A picture of a sweep before it is written.
-struct Shot {
-    name: String,
-    title: String,
-    drawn: Drawn,
-}
-
-/// A sweep with its pictures.
-struct DrawnSweep {
-    /// Name of its folder.
-    name: String,
-    /// What battery it is of.
-    what: &'static str,
-    cases: Cases,
-    shots: Vec<Shot>,
-    /// What the reader should know of all of it.
-    notes: Vec<String>,
 }
 
 /// Draws the sweeps found into `FOLDER/figures`, the page last; `done` hears of each sweep. Nothing is written before all is drawn.
@@ -167,30 +151,6 @@ fn sweep(
         cases,
         shots,
     })
-}
-
-impl DrawnSweep {
-    /// Everything that the sweep lacks, in sentences.
-    fn lacks(&self) -> Vec<String> {
-        let failed = self.cases.failed.iter();
-        let failed = failed.map(|f| format!("{}: failed: {}: {}", self.name, f.case, f.reason));
-        failed.chain(self.remarks()).collect()
-    }
-
-    /// What the sweep lacks besides failed cases, in sentences.
-    fn remarks(&self) -> Vec<String> {
-        let Cases {
-            unfinished, lost, ..
-        } = &self.cases;
-        let named = |what: &str, names: &[String]| {
-            (!names.is_empty()).then(|| format!("{}: {what}: {}", self.name, names.join(", ")))
-        };
-        let mut all: Vec<String> = Vec::new();
-        all.extend(named("not finished", unfinished));
-        all.extend(named("in the table, but without a folder", lost));
-        all.extend(self.notes.iter().map(|n| format!("{}: {n}", self.name)));
-        all
-    }
 }
 
 /// What to say of a folder in which no case is finished.

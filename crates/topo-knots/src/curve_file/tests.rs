@@ -82,31 +82,43 @@ fn curves_survive_every_format() {
     std::fs::remove_dir_all(&folder).expect("removed");
 }
 
-#[test]
-fn files_as_people_have_them() {
-    let xyz = lines(|_, [x, y, z]| format!("{x} {y} {z}"));
-    let rows = lines(|_, [x, y, z]| format!("{x},{y},{z}"));
-    let csv = format!("x,y,z\n{rows}");
-    let vect = format!("VECT\n1 6 0\n-6\n0\n{xyz}");
-    let mut texts: Vec<(Vec<u8>, CurveFormat)> = Vec::new();
-    for (text, format) in [(&xyz, Xyz), (&csv, Csv), (&vect, Vect)] {
-        for end in ["\r\n", "\r", "\r\r\n"] {
-            texts.push((text.replace('\n', end).into_bytes(), format));
-        }
-        texts.push((format!("\u{feff}{text}").into_bytes(), format));
-        texts.push((format!("\u{feff}\u{feff}{text}").into_bytes(), format));
-        texts.push((text.trim_end().as_bytes().to_vec(), format));
-        texts.push((format!("{text}\u{1a}").into_bytes(), format));
-        for little in [true, false] {
-            texts.push((utf16(&format!("\u{feff}{text}"), little), format));
-            texts.push((utf16(text, little), format));
-        }
-        let remark = if format == Vect { "VECT #" } else { "#" };
-        let rest = text.strip_prefix("VECT").unwrap_or(text);
-        let latin1 = [remark.as_bytes(), b" f\xfcr den Knoten\n", rest.as_bytes()].concat();
-        texts.push((latin1, format));
+/// A file and its format.
+type File<T> = (T, CurveFormat);
+
+fn csv_rows() -> String {
+    lines(|_, [x, y, z]| format!("{x},{y},{z}"))
+}
+
+fn xyz_rows() -> String {
+    lines(|_, [x, y, z]| format!("{x} {y} {z}"))
+}
+
+/// A text with every end of line and in every encoding.
+fn encodings(text: &str, format: CurveFormat) -> Vec<File<Vec<u8>>> {
+    let mut texts = Vec::new();
+    for end in ["\r\n", "\r", "\r\r\n"] {
+        texts.push((text.replace('\n', end).into_bytes(), format));
     }
-    for (text, format) in [
+    texts.push((format!("\u{feff}{text}").into_bytes(), format));
+    texts.push((format!("\u{feff}\u{feff}{text}").into_bytes(), format));
+    texts.push((text.trim_end().as_bytes().to_vec(), format));
+    texts.push((format!("{text}\u{1a}").into_bytes(), format));
+    for little in [true, false] {
+        texts.push((utf16(&format!("\u{feff}{text}"), little), format));
+        texts.push((utf16(text, little), format));
+    }
+    let remark = if format == Vect { "VECT #" } else { "#" };
+    let rest = text.strip_prefix("VECT").unwrap_or(text);
+    let latin1 = [remark.as_bytes(), b" f\xfcr den Knoten\n", rest.as_bytes()].concat();
+    texts.push((latin1, format));
+    texts
+}
+
+/// Headers, separators and quotes.
+fn csv_files() -> Vec<File<String>> {
+    let rows = csv_rows();
+    let csv = format!("x,y,z\n{rows}");
+    vec![
         (format!("# x,y,z\n{rows}"), Csv),
         (format!("# made by hand\n# x y z\n# x: along\n{rows}"), Csv),
         (
@@ -147,7 +159,15 @@ fn files_as_people_have_them() {
             ),
             Csv,
         ),
-        (csv.clone(), Xyz),
+    ]
+}
+
+/// Columns, exponents, signs, titles, extended XYZ and a repeated first vertex.
+fn xyz_files() -> Vec<File<String>> {
+    let xyz = xyz_rows();
+    let csv = format!("x,y,z\n{}", csv_rows());
+    vec![
+        (csv, Xyz),
         (lines(|k, [x, y, z]| format!("{} {x} {y} {z}", k + 1)), Xyz),
         (lines(|k, [x, y, z]| format!("{x} {y} {z} {k}")), Xyz),
         (lines(|_, x| x.map(|c| format!("{c}.0D+00")).join(" ")), Xyz),
@@ -186,9 +206,20 @@ fn files_as_people_have_them() {
             Xyz,
         ),
         (format!("{xyz}-2 2 1\n"), Xyz),
-    ] {
-        texts.push((text.into_bytes(), format));
+    ]
+}
+
+#[test]
+fn files_as_people_have_them() {
+    let xyz = xyz_rows();
+    let csv = format!("x,y,z\n{}", csv_rows());
+    let vect = format!("VECT\n1 6 0\n-6\n0\n{xyz}");
+    let mut texts: Vec<File<Vec<u8>>> = Vec::new();
+    for (text, format) in [(&xyz, Xyz), (&csv, Csv), (&vect, Vect)] {
+        texts.extend(encodings(text, format));
     }
+    let files = csv_files().into_iter().chain(xyz_files());
+    texts.extend(files.map(|(text, format)| (text.into_bytes(), format)));
     for (text, format) in texts {
         let shown = String::from_utf8_lossy(&text).into_owned();
         let file = parse(&text, format).unwrap_or_else(|e| panic!("{e}: {shown}"));
@@ -344,6 +375,18 @@ fn a_repeated_first_vertex_keeps_its_edge() {
     assert_eq!((open.len(), open[0]), (7, open[6]));
 }
 
+/// Each file is refused with these words.
+fn assert_refused<T: AsRef<[u8]>, const N: usize>(files: [(T, CurveFormat, &str); N]) {
+    for (text, format, expected) in files {
+        let error = refusal(&text, format);
+        assert!(
+            error.starts_with("curve: ") && error.contains(expected),
+            "{expected}: {error}"
+        );
+        assert!(error.len() < 300, "{error}");
+    }
+}
+
 #[test]
 fn what_does_not_add_up_is_refused_with_its_line() {
     let molecule = |n: usize| {
@@ -352,13 +395,8 @@ fn what_does_not_add_up_is_refused_with_its_line() {
             lines(|_, [x, y, z]| format!("C {x} {y} {z}"))
         )
     };
-    let vect = |n: usize| {
-        format!(
-            "VECT\n1 {n} 0\n-{n}\n0\n{}",
-            lines(|_, [x, y, z]| format!("{x} {y} {z}"))
-        )
-    };
-    for (text, format, expected) in [
+    let vect = |n: usize| format!("VECT\n1 {n} 0\n-{n}\n0\n{}", xyz_rows());
+    assert_refused([
         (molecule(5), Xyz, "line 8: `C 0 2 0` is left over"),
         (
             molecule(7),
@@ -367,12 +405,12 @@ fn what_does_not_add_up_is_refused_with_its_line() {
         ),
         (molecule(usize::MAX), Xyz, "6 follow"),
         (
-            "5\n0 0 0\n".to_owned() + &lines(|_, [x, y, z]| format!("{x} {y} {z}")),
+            "5\n0 0 0\n".to_owned() + &xyz_rows(),
             Xyz,
             "line 8: `0 2 0` is left over",
         ),
         (
-            "6\n0 0 0\n".to_owned() + &lines(|_, [x, y, z]| format!("{x} {y} {z}")),
+            "6\n0 0 0\n".to_owned() + &xyz_rows(),
             Xyz,
             "line 2: `0 0 0` stands where the title should",
         ),
@@ -416,98 +454,97 @@ fn what_does_not_add_up_is_refused_with_its_line() {
             Vect,
             "line 1: the first word must be VECT",
         ),
+    ]);
+}
+
+#[test]
+fn columns_without_one_reading_are_refused_with_their_line() {
+    assert_refused([
         (
-            "0 0 0 9\n1 0 0 8\n".to_owned(),
+            "0 0 0 9\n1 0 0 8\n",
             Xyz,
             "line 1: 4 numbers instead of 3, and no name tells",
         ),
         (
-            "C 1 0 0 0\nC 2 1 0 0\nC 3 1 1 0\n".to_owned(),
+            "C 1 0 0 0\nC 2 1 0 0\nC 3 1 1 0\n",
             Xyz,
             "line 1: 5 columns instead of 3",
         ),
+        ("0 0 0\n1 1\n", Xyz, "line 2: 2 columns instead of 3: `1 1`"),
         (
-            "0 0 0\n1 1\n".to_owned(),
-            Xyz,
-            "line 2: 2 columns instead of 3: `1 1`",
+            "x,y\n0,0\n",
+            Csv,
+            "line 1: the header must name the columns x, y and z",
         ),
+        ("x,y,z,x\n0,0,0,0\n", Csv, "each once"),
         (
-            "0 0 0\n0 NaN 0\n".to_owned(),
-            Xyz,
-            "line 2: y: `NaN` is not finite",
+            "s,u,v\n0,0,0\n",
+            Csv,
+            "line 1: a header that names the columns x, y and z",
         ),
+        ("x,y,z\n0,0\n", Csv, "line 2: 2 columns instead of 3"),
         (
-            "0 0 0\n0 1e999 0\n".to_owned(),
+            "x,y,z,closed\n0,0,0,true\n1,0,0,false\n",
+            Csv,
+            "line 3: `closed` changes",
+        ),
+    ]);
+}
+
+#[test]
+fn numbers_without_one_reading_are_refused_with_their_line() {
+    assert_refused([
+        ("0 0 0\n0 NaN 0\n", Xyz, "line 2: y: `NaN` is not finite"),
+        (
+            "0 0 0\n0 1e999 0\n",
             Xyz,
             "line 2: y: `1e999` is beyond the range",
         ),
         (
-            "0 0 0\n0 1e-999 0\n".to_owned(),
+            "0 0 0\n0 1e-999 0\n",
             Xyz,
             "line 2: y: `1e-999` is beyond the range",
         ),
         (
-            "0,5 1,5 2,5\n1,5 1,5 2,5\n".to_owned(),
+            "0,5 1,5 2,5\n1,5 1,5 2,5\n",
             Xyz,
             "line 1: `0,5` seems to have a decimal comma",
         ),
         (
-            "x;y;z\n0,5;1;2\n".to_owned(),
+            "x;y;z\n0,5;1;2\n",
             Csv,
             "line 2: x: `0,5` seems to have a decimal comma; write decimal points",
         ),
         (
-            "x,y,z\n0,5,1,5,2,5\n".to_owned(),
+            "x,y,z\n0,5,1,5,2,5\n",
             Csv,
             "line 2: 6 columns instead of 3: `0,5,1,5,2,5`; if the commas are decimal marks",
         ),
         (
-            "x,y\n0,0\n".to_owned(),
-            Csv,
-            "line 1: the header must name the columns x, y and z",
-        ),
-        ("x,y,z,x\n0,0,0,0\n".to_owned(), Csv, "each once"),
-        (
-            "s,u,v\n0,0,0\n".to_owned(),
-            Csv,
-            "line 1: a header that names the columns x, y and z",
-        ),
-        (
-            "x,y,z\n0,0,0\n1,oops,0\n".to_owned(),
+            "x,y,z\n0,0,0\n1,oops,0\n",
             Csv,
             "line 3: y: `oops` is not a number",
         ),
         (
-            "x,y,z\n0,0,0\n1,,0\n".to_owned(),
+            "x,y,z\n0,0,0\n1,,0\n",
             Csv,
             "line 3: y: a coordinate is empty",
         ),
         (
-            "x,y,z\n0,0\n".to_owned(),
-            Csv,
-            "line 2: 2 columns instead of 3",
-        ),
-        (
-            "x,y,z,closed\n0,0,0,true\n1,0,0,false\n".to_owned(),
-            Csv,
-            "line 3: `closed` changes",
-        ),
-        (String::new(), Xyz, "the file is empty"),
-        ("x,y,z\n".to_owned(), Csv, "no vertex"),
-        ("VECT\n0 0 0\n".to_owned(), Vect, "no vertex"),
-        (
-            "0 0 0\n1 \u{1} 0\n".to_owned(),
+            "0 0 0\n1 \u{1} 0\n",
             Xyz,
             "line 2: the control character 0x01",
         ),
-    ] {
-        let error = refusal(&text, format);
-        assert!(
-            error.starts_with("curve: ") && error.contains(expected),
-            "{expected}: {error}"
-        );
-        assert!(error.len() < 300, "{error}");
-    }
+    ]);
+}
+
+#[test]
+fn files_without_a_curve_are_refused() {
+    assert_refused([
+        ("", Xyz, "the file is empty"),
+        ("x,y,z\n", Csv, "no vertex"),
+        ("VECT\n0 0 0\n", Vect, "no vertex"),
+    ]);
     assert!(refusal(b"\x1f\x8b\x08\0", Xyz).contains("gunzip"));
     assert!(refusal(b"\x93NUMPY\x01\0", Csv).contains("numpy.savetxt"));
     assert!(refusal(b"\0\x01\x02\0", Xyz).contains("no text"));

@@ -37,32 +37,21 @@ pub(super) fn minimise(
     let mut gradient = vec![0.0; n];
     let mut value = objective.value(x, &mut gradient);
     let mut n_evaluations = 1;
-    let mut pairs: Vec<(Vec<f64>, Vec<f64>, f64)> = Vec::new();
+    let mut memory = Memory::default();
     let (mut direction, mut trial, mut next) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
-    let mut weights = [0.0; MEMORY];
-    let mut scale = 1.0;
     for _ in 0..most_steps {
         direction.copy_from_slice(&gradient);
-        for (k, (s, y, rate)) in pairs.iter().enumerate().rev() {
-            weights[k] = rate * dot(s, &direction);
-            axpy(-weights[k], y, &mut direction);
-        }
-        objective.precondition(&mut direction);
-        direction.iter_mut().for_each(|d| *d *= scale);
-        for (k, (s, y, rate)) in pairs.iter().enumerate() {
-            let back = rate * dot(y, &direction);
-            axpy(weights[k] - back, s, &mut direction);
-        }
+        memory.apply(objective, &mut direction);
         let mut slope = -dot(&direction, &gradient);
         let largest = direction.iter().fold(0.0_f64, |a, d| a.max(d.abs()));
         if !(value.is_finite() && largest.is_finite()) {
             return None;
         }
         if slope >= 0.0 {
-            if pairs.is_empty() {
+            if memory.pairs.is_empty() {
                 break;
             }
-            pairs.clear();
+            memory.pairs.clear();
             continue;
         }
         if largest < tolerance {
@@ -86,25 +75,15 @@ pub(super) fn minimise(
             slope *= 0.5;
         }
         if !accepted {
-            if pairs.is_empty() {
+            if memory.pairs.is_empty() {
                 break;
             }
-            pairs.clear();
+            memory.pairs.clear();
             continue;
-        }
-        if pairs.len() == MEMORY {
-            pairs.remove(0);
         }
         let s: Vec<f64> = trial.iter().zip(x.iter()).map(|(t, x)| t - x).collect();
         let y: Vec<f64> = next.iter().zip(&gradient).map(|(a, b)| a - b).collect();
-        let curvature = dot(&s, &y);
-        if curvature > 1e-10 * dot(&y, &y).sqrt() * dot(&s, &s).sqrt() {
-            // Scales the preconditioner to the curvature along the last step, so that full steps mostly serve.
-            direction.copy_from_slice(&y);
-            objective.precondition(&mut direction);
-            scale = curvature / dot(&y, &direction);
-            pairs.push((s, y, 1.0 / curvature));
-        }
+        memory.learn(objective, s, y, &mut direction);
         x.copy_from_slice(&trial);
         gradient.copy_from_slice(&next);
         if stop(x) {
@@ -118,6 +97,61 @@ pub(super) fn minimise(
         n_evaluations,
         interrupted: false,
     })
+}
+
+/// The estimate of the inverse Hessian.
+struct Memory {
+    /// Steps, changes of the gradient along them, and one over their products.
+    pairs: Vec<(Vec<f64>, Vec<f64>, f64)>,
+    weights: [f64; MEMORY],
+    /// Scales the preconditioner to the curvature along the last step, so that full steps mostly serve.
+    scale: f64,
+}
+
+impl Default for Memory {
+    fn default() -> Self {
+        Self {
+            pairs: Vec::new(),
+            weights: [0.0; MEMORY],
+            scale: 1.0,
+        }
+    }
+}
+
+impl Memory {
+    /// Applies the estimate in place, by the recursion of two loops.
+    fn apply(&mut self, objective: &mut impl Objective, direction: &mut [f64]) {
+        for (k, (s, y, rate)) in self.pairs.iter().enumerate().rev() {
+            self.weights[k] = rate * dot(s, direction);
+            axpy(-self.weights[k], y, direction);
+        }
+        objective.precondition(direction);
+        direction.iter_mut().for_each(|d| *d *= self.scale);
+        for (k, (s, y, rate)) in self.pairs.iter().enumerate() {
+            let back = rate * dot(y, direction);
+            axpy(self.weights[k] - back, s, direction);
+        }
+    }
+
+    /// Takes up a step and the change of the gradient along it; `work` is overwritten.
+    fn learn(
+        &mut self,
+        objective: &mut impl Objective,
+        s: Vec<f64>,
+        y: Vec<f64>,
+        work: &mut [f64],
+    ) {
+        if self.pairs.len() == MEMORY {
+            self.pairs.remove(0);
+        }
+        let curvature = dot(&s, &y);
+        if curvature > 1e-10 * dot(&y, &y).sqrt() * dot(&s, &s).sqrt() {
+            work.copy_from_slice(&y);
+            objective.precondition(work);
+            self.scale = curvature / dot(&y, work);
+            self.pairs.push((s, y, 1.0 / curvature));
+        }
+    }
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {

@@ -28,6 +28,29 @@ pub(crate) struct Level {
     pub max_steps: usize,
 }
 
+impl Level {
+    /// Hessian of the tension of a curve with edges h.
+    fn stretch(&self, h: f64) -> Hessian {
+        Hessian {
+            stencil: [2.0 / h, -1.0 / h, 0.0],
+            weights: self.weights,
+        }
+    }
+
+    /// That and the proximal terms.
+    fn damped(&self, stretch: Hessian, h: f64) -> Hessian {
+        let bend = self.curvature_damping / h.powi(3);
+        Hessian {
+            stencil: [
+                stretch.stencil[0] + self.damping * h + 6.0 * bend,
+                stretch.stencil[1] - 4.0 * bend,
+                bend,
+            ],
+            weights: self.weights,
+        }
+    }
+}
+
 /// Steps over which the fall of the ropelength is judged.
 const WINDOW: usize = 6;
 /// Largest displacement of a vertex in one step, in units of the thickness: two strands cannot pass each other below 1.
@@ -78,45 +101,25 @@ pub(crate) fn tighten_level(start: &Polyline, level: &Level) -> Option<Outcome> 
         let length = curve.length();
         let h = length / n as f64;
         rebuild(curve.vertices(), delta, &mut pairs, &mut rows);
-        let stretch = Hessian {
-            stencil: [2.0 / h, -1.0 / h, 0.0],
-            weights: level.weights,
-        };
+        let stretch = level.stretch(h);
         let flat: Vec<f64> = curve
             .vertices()
             .iter()
             .flat_map(|x| [x.x, x.y, x.z])
             .collect();
         stretch.multiply(&flat, &mut gradient);
-        let bend = level.curvature_damping / h.powi(3);
-        let hessian = Hessian {
-            stencil: [
-                stretch.stencil[0] + level.damping * h + 6.0 * bend,
-                stretch.stencil[1] - 4.0 * bend,
-                bend,
-            ],
-            weights: level.weights,
-        };
+        let hessian = level.damped(stretch, h);
         let gap = 1e-2 * level.tolerance * length;
         let solution = qp::solve(hessian, &gradient, &rows, gap)?;
         n_factorisations += solution.n_iterations;
         n_steps += 1;
-        let largest = solution
-            .y
-            .chunks_exact(3)
-            .map(|y| y[0].hypot(y[1]).hypot(y[2]))
-            .fold(0.0, f64::max);
+        let largest = largest_displacement(&solution.y);
         let alpha = if largest > delta {
             delta / largest
         } else {
             1.0
         };
-        let moved = curve
-            .vertices()
-            .iter()
-            .zip(solution.y.chunks_exact(3))
-            .map(|(x, y)| x + alpha * V::new(y[0], y[1], y[2]));
-        curve = Polyline::new(moved.collect(), true).ok()?;
+        curve = moved(&curve, alpha, &solution.y)?;
         tau = thickness(&curve).tau;
         let ropelength = curve.length() / tau;
         tracing::trace!(
@@ -153,4 +156,20 @@ pub(crate) fn tighten_level(start: &Polyline, level: &Level) -> Option<Outcome> 
         n_factorisations,
         converged,
     })
+}
+
+fn largest_displacement(y: &[f64]) -> f64 {
+    y.chunks_exact(3)
+        .map(|y| y[0].hypot(y[1]).hypot(y[2]))
+        .fold(0.0, f64::max)
+}
+
+/// The curve moved by `alpha` times the displacements.
+fn moved(curve: &Polyline, alpha: f64, y: &[f64]) -> Option<Polyline> {
+    let moved = curve
+        .vertices()
+        .iter()
+        .zip(y.chunks_exact(3))
+        .map(|(x, y)| x + alpha * V::new(y[0], y[1], y[2]));
+    Polyline::new(moved.collect(), true).ok()
 }

@@ -51,53 +51,18 @@ pub(crate) fn solve(
     rows: &[Row],
     tolerance: f64,
 ) -> Option<Solution> {
-    let (dim, m) = (gradient.len(), rows.len());
-    let mut system = System::new(dim / 3, rows)?;
-    let mut y = vec![0.0; dim];
-    let mut dual_residual = gradient.to_vec();
-    let mut step = vec![0.0; dim];
-    if m == 0 {
-        system.assemble(hessian, rows, &[]);
-        system.matrix.factor().ok()?;
-        y.iter_mut().zip(gradient).for_each(|(y, g)| *y = -g);
-        system.matrix.solve_in_place(&mut y, 1);
-        return Some(Solution {
-            y,
-            n_iterations: 1,
-            converged: true,
-        });
+    let mut system = System::new(gradient.len() / 3, rows)?;
+    if rows.is_empty() {
+        return system.solve_free(hessian, gradient);
     }
-    // A tube at rest carries tension 1: each vertex gathers about the force of one edge from its rows.
-    let force = gradient.iter().map(|g| g.abs()).sum::<f64>() / m as f64;
-    let mut slack: Vec<f64> = rows.iter().map(|r| (-r.bound).max(0.02)).collect();
-    let mean_slack = slack.iter().sum::<f64>() / m as f64;
-    let mut multiplier: Vec<f64> = slack
-        .iter()
-        .map(|s| 0.5 * force * mean_slack / (s + 0.1 * mean_slack))
-        .collect();
-    let mut weights = vec![0.0; m];
-    let mut primal_residual = vec![0.0; m];
-    let (mut d_slack, mut d_multiplier) = (vec![0.0; m], vec![0.0; m]);
-    let mut correction = vec![0.0; m];
+    let mut at = Iterate::new(gradient, rows);
     let scale = gradient.iter().fold(1e-300_f64, |a, g| a.max(g.abs()));
     let mut n_iterations = 0;
     let mut converged;
     loop {
-        hessian.multiply(&y, &mut dual_residual);
-        dual_residual
-            .iter_mut()
-            .zip(gradient)
-            .for_each(|(r, g)| *r += g);
-        for (row, l) in rows.iter().zip(&multiplier) {
-            row.add(-l, &mut dual_residual);
-        }
-        let mut worst_primal = 0.0_f64;
-        for (k, row) in rows.iter().enumerate() {
-            primal_residual[k] = row.dot(&y) - slack[k] - row.bound;
-            worst_primal = worst_primal.max(primal_residual[k].abs());
-        }
-        let worst_dual = dual_residual.iter().fold(0.0_f64, |a, r| a.max(r.abs()));
-        let gap: f64 = slack.iter().zip(&multiplier).map(|(s, l)| s * l).sum();
+        let worst_dual = at.find_dual_residual(hessian, gradient, rows);
+        let worst_primal = at.find_primal_residual(rows);
+        let gap: f64 = at.products().sum();
         if !(gap.is_finite() && worst_dual.is_finite()) {
             return None;
         }
@@ -106,63 +71,164 @@ pub(crate) fn solve(
             break;
         }
         n_iterations += 1;
-        for k in 0..m {
-            weights[k] = multiplier[k] / slack[k];
-        }
-        system.assemble(hessian, rows, &weights);
+        at.weigh();
+        system.assemble(hessian, rows, &at.weights);
         if system.matrix.factor().is_err() {
             break;
         }
-        let mean = gap / m as f64;
-        // Predictor: straight for complementarity.
-        for k in 0..m {
-            correction[k] = slack[k] * multiplier[k];
+        at.predict(&mut system, rows);
+        at.correct(&mut system, rows, gap / rows.len() as f64);
+        at.advance();
+    }
+    Some(Solution {
+        y: at.y,
+        n_iterations,
+        converged,
+    })
+}
+
+/// Where the iteration stands, and where it goes: vectors over the coordinates and over the rows.
+struct Iterate {
+    y: Vec<f64>,
+    slack: Vec<f64>,
+    multiplier: Vec<f64>,
+    dual_residual: Vec<f64>,
+    primal_residual: Vec<f64>,
+    /// Multiplier over slack.
+    weights: Vec<f64>,
+    /// What the products of slack and multiplier are to lose.
+    correction: Vec<f64>,
+    step: Vec<f64>,
+    d_slack: Vec<f64>,
+    d_multiplier: Vec<f64>,
+}
+
+impl Iterate {
+    fn new(gradient: &[f64], rows: &[Row]) -> Self {
+        let (dim, m) = (gradient.len(), rows.len());
+        // A tube at rest carries tension 1: each vertex gathers about the force of one edge from its rows.
+        let force = gradient.iter().map(|g| g.abs()).sum::<f64>() / m as f64;
+        let slack: Vec<f64> = rows.iter().map(|r| (-r.bound).max(0.02)).collect();
+        let mean_slack = slack.iter().sum::<f64>() / m as f64;
+        let multiplier = slack
+            .iter()
+            .map(|s| 0.5 * force * mean_slack / (s + 0.1 * mean_slack))
+            .collect();
+        Self {
+            y: vec![0.0; dim],
+            slack,
+            multiplier,
+            dual_residual: gradient.to_vec(),
+            primal_residual: vec![0.0; m],
+            weights: vec![0.0; m],
+            correction: vec![0.0; m],
+            step: vec![0.0; dim],
+            d_slack: vec![0.0; m],
+            d_multiplier: vec![0.0; m],
         }
-        let mut direction = |correction: &[f64],
-                             d_slack: &mut [f64],
-                             d_multiplier: &mut [f64],
-                             step: &mut [f64]| {
-            step.iter_mut()
-                .zip(&dual_residual)
-                .for_each(|(s, r)| *s = -r);
-            for (k, row) in rows.iter().enumerate() {
-                row.add(
-                    -(correction[k] / slack[k] + weights[k] * primal_residual[k]),
-                    step,
-                );
-            }
-            system.matrix.solve_in_place(step, 1);
-            for (k, row) in rows.iter().enumerate() {
-                d_slack[k] = row.dot(step) + primal_residual[k];
-                d_multiplier[k] = -correction[k] / slack[k] - weights[k] * d_slack[k];
-            }
-        };
-        direction(&correction, &mut d_slack, &mut d_multiplier, &mut step);
-        let reach = longest_step(&slack, &d_slack).min(longest_step(&multiplier, &d_multiplier));
+    }
+
+    /// Residual of the balance of forces; returns the largest.
+    fn find_dual_residual(&mut self, hessian: Hessian, gradient: &[f64], rows: &[Row]) -> f64 {
+        hessian.multiply(&self.y, &mut self.dual_residual);
+        self.dual_residual
+            .iter_mut()
+            .zip(gradient)
+            .for_each(|(r, g)| *r += g);
+        for (row, l) in rows.iter().zip(&self.multiplier) {
+            row.add(-l, &mut self.dual_residual);
+        }
+        self.dual_residual
+            .iter()
+            .fold(0.0_f64, |a, r| a.max(r.abs()))
+    }
+
+    /// Residuals of the rows; returns the largest.
+    fn find_primal_residual(&mut self, rows: &[Row]) -> f64 {
+        let mut worst = 0.0_f64;
+        for (k, row) in rows.iter().enumerate() {
+            self.primal_residual[k] = row.dot(&self.y) - self.slack[k] - row.bound;
+            worst = worst.max(self.primal_residual[k].abs());
+        }
+        worst
+    }
+
+    /// Slack times multiplier of each row: all zero at the solution.
+    fn products(&self) -> impl Iterator<Item = f64> {
+        self.slack.iter().zip(&self.multiplier).map(|(s, l)| s * l)
+    }
+
+    fn weigh(&mut self) {
+        for k in 0..self.weights.len() {
+            self.weights[k] = self.multiplier[k] / self.slack[k];
+        }
+    }
+
+    /// Predictor: straight for complementarity.
+    fn predict(&mut self, system: &mut System, rows: &[Row]) {
+        for k in 0..rows.len() {
+            self.correction[k] = self.slack[k] * self.multiplier[k];
+        }
+        self.find_direction(system, rows);
+    }
+
+    /// Corrector: takes in the second order of the predictor, and as much centring as that was cut short; `mean` is the mean
+    /// product now.
+    fn correct(&mut self, system: &mut System, rows: &[Row], mean: f64) {
+        let reach = self.reach();
+        let m = rows.len();
         let affine: f64 = (0..m)
-            .map(|k| (slack[k] + reach * d_slack[k]) * (multiplier[k] + reach * d_multiplier[k]))
+            .map(|k| {
+                (self.slack[k] + reach * self.d_slack[k])
+                    * (self.multiplier[k] + reach * self.d_multiplier[k])
+            })
             .sum::<f64>()
             / m as f64;
         let centring = (affine / mean).clamp(0.0, 1.0).powi(3) * mean;
         for k in 0..m {
-            correction[k] = slack[k] * multiplier[k] + d_slack[k] * d_multiplier[k] - centring;
+            self.correction[k] = self.slack[k] * self.multiplier[k]
+                + self.d_slack[k] * self.d_multiplier[k]
+                - centring;
         }
-        direction(&correction, &mut d_slack, &mut d_multiplier, &mut step);
-        let reach = longest_step(&slack, &d_slack).min(longest_step(&multiplier, &d_multiplier));
-        let reach = (0.995 * reach).min(1.0);
-        for (y, d) in y.iter_mut().zip(&step) {
-            *y += reach * d;
+        self.find_direction(system, rows);
+    }
+
+    /// The Newton direction of the factored system for the correction.
+    fn find_direction(&mut self, system: &mut System, rows: &[Row]) {
+        self.step
+            .iter_mut()
+            .zip(&self.dual_residual)
+            .for_each(|(s, r)| *s = -r);
+        for (k, row) in rows.iter().enumerate() {
+            row.add(
+                -(self.correction[k] / self.slack[k] + self.weights[k] * self.primal_residual[k]),
+                &mut self.step,
+            );
         }
-        for k in 0..m {
-            slack[k] += reach * d_slack[k];
-            multiplier[k] += reach * d_multiplier[k];
+        system.matrix.solve_in_place(&mut self.step, 1);
+        for (k, row) in rows.iter().enumerate() {
+            self.d_slack[k] = row.dot(&self.step) + self.primal_residual[k];
+            self.d_multiplier[k] =
+                -self.correction[k] / self.slack[k] - self.weights[k] * self.d_slack[k];
         }
     }
-    Some(Solution {
-        y,
-        n_iterations,
-        converged,
-    })
+
+    /// Share of the direction that keeps slacks and multipliers positive.
+    fn reach(&self) -> f64 {
+        longest_step(&self.slack, &self.d_slack)
+            .min(longest_step(&self.multiplier, &self.d_multiplier))
+    }
+
+    fn advance(&mut self) {
+        let reach = (0.995 * self.reach()).min(1.0);
+        for (y, d) in self.y.iter_mut().zip(&self.step) {
+            *y += reach * d;
+        }
+        for k in 0..self.slack.len() {
+            self.slack[k] += reach * self.d_slack[k];
+            self.multiplier[k] += reach * self.d_multiplier[k];
+        }
+    }
 }
 
 /// Largest step that keeps all values positive (above 1 when none falls fast).
@@ -248,6 +314,19 @@ impl System {
             blocks,
             stencil,
             row_blocks,
+        })
+    }
+
+    /// The minimum without rows: one linear system.
+    fn solve_free(&mut self, hessian: Hessian, gradient: &[f64]) -> Option<Solution> {
+        self.assemble(hessian, &[], &[]);
+        self.matrix.factor().ok()?;
+        let mut y: Vec<f64> = gradient.iter().map(|g| -g).collect();
+        self.matrix.solve_in_place(&mut y, 1);
+        Some(Solution {
+            y,
+            n_iterations: 1,
+            converged: true,
         })
     }
 

@@ -118,13 +118,7 @@ pub(crate) fn measured_discharge(
     let charged = charge(job, interrupt)?.rod;
     let last = charged.record().samples.last();
     let energy = last.map_or(f64::NAN, |s| s.elastic());
-    let run = charged
-        .cut(site)
-        .and_then(|c| c.discharge(&job.scene.discharge, interrupt))
-        .map_err(|source| LabError::Rod {
-            case: job.scene.case_name(job.case),
-            source,
-        })?;
+    let run = job.discharge(&charged, site, &job.scene.discharge, interrupt)?;
     let times = DischargeTimes::of(&run.record.curve, &ELASTIC, run.start, &ELASTIC_SHARES);
     let at = |share| times.at(share).map(|t| t.value);
     Ok(MeasuredDischarge {

@@ -41,10 +41,6 @@ pub fn discharge_frames(
     let Some(tight) = shapes.get(&case.knot) else {
         return Ok(Vec::new());
     };
-    let refuse = |source| LabError::Rod {
-        case: scene.case_name(&case),
-        source,
-    };
     let job = CaseJob {
         scene,
         case: &case,
@@ -63,10 +59,8 @@ pub fn discharge_frames(
         outputs_per_decade: per_decade,
         ..scene.discharge
     };
-    let run = charged
-        .cut(CutSite::MaximumEnergyDensity)
-        .and_then(|c| c.discharge(&settings, interrupt))
-        .map_err(refuse)?;
+    let site = CutSite::MaximumEnergyDensity;
+    let run = job.discharge(&charged, site, &settings, interrupt)?;
     frames.extend(run.record.samples.iter().map(|s| {
         let density = energy_density(&case.rod, &s.state);
         ShapeFrame {

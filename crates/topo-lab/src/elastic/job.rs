@@ -1,11 +1,13 @@
 //! A case with what it starts from, and what was followed of it.
 
 use topo_analysis::{DischargeTimes, SweepRow, Timeline};
+use topo_core::Interrupt;
 use topo_knots::{KnotTable, TightKnot};
-use topo_rod::Discharge;
+use topo_rod::{ChargedRod, CutSite, Discharge, DischargeSettings, RodError};
 
 use super::case::ElasticCase;
 use super::scene::ElasticScene;
+use crate::LabError;
 
 /// A case with what it starts from.
 #[derive(Clone, Copy)]
@@ -14,6 +16,30 @@ pub(crate) struct CaseJob<'a> {
     pub case: &'a ElasticCase,
     pub tight: &'a TightKnot,
     pub table: &'a KnotTable,
+}
+
+impl CaseJob<'_> {
+    /// The error of this case.
+    pub(crate) fn refused(&self, source: RodError) -> LabError {
+        LabError::Rod {
+            case: self.scene.case_name(self.case),
+            source,
+        }
+    }
+
+    /// Cuts the charged rod and follows it.
+    pub(crate) fn discharge(
+        &self,
+        charged: &ChargedRod,
+        site: CutSite,
+        settings: &DischargeSettings,
+        interrupt: &Interrupt,
+    ) -> Result<Discharge, LabError> {
+        charged
+            .cut(site)
+            .and_then(|cut| cut.discharge(settings, interrupt))
+            .map_err(|source| self.refused(source))
+    }
 }
 
 /// One cut of a charged rod, followed to its end.

@@ -124,6 +124,40 @@ mod tests {
     use super::*;
     use crate::elastic::Cuts;
 
+    /// A number of a scene changed by a factor.
+    const NUMBERS: [fn(&mut ElasticScene, f64); 12] = [
+        |s, f| s.rod.slenderness *= f,
+        |s, f| s.rod.twist_ratio *= f,
+        |s, f| s.rod.stretch_ratio *= f,
+        |s, f| s.rod.contact.as_mut().unwrap().stiffness *= f,
+        |s, f| s.rod.friction.as_mut().unwrap().ratio *= f,
+        |s, f| s.rod.friction.as_mut().unwrap().range = FrictionRange::TimesContact(f),
+        |s, f| s.imperfection *= f,
+        |s, f| s.charge.duration *= f,
+        |s, f| s.discharge.until_released *= f,
+        |s, f| s.discharge.longest *= f,
+        |s, f| s.accuracy.tolerance *= f,
+        |s, f| s.accuracy.gamma *= f,
+    ];
+
+    /// A choice of a scene made in another way.
+    const CHOICES: [fn(&mut ElasticScene); 14] = [
+        |s| s.rod.contact = None,
+        |s| s.rod.friction = None,
+        |s| (s.rod.contact, s.rod.friction) = (None, None),
+        |s| s.rod.friction.as_mut().unwrap().range = FrictionRange::Contact,
+        |s| s.rod.n_edges = 100,
+        |s| s.rod.reading = Reading::Hard,
+        |s| s.seed = 7,
+        |s| s.cuts = Cuts::NearTies,
+        |s| s.cuts = Cuts::All(3),
+        |s| s.timeline.closures = 0,
+        |s| s.accuracy.reuse = 1,
+        |s| *s = ElasticScene::published(Preset::Standard),
+        |s| *s = ElasticScene::published(Preset::Paper),
+        |s| s.fixed_cuts = Some(BTreeMap::from([("3_1 0".to_owned(), vec![0.5])])),
+    ];
+
     /// Each setting of a scene changed by itself, by a round number and by the least that a number can change.
     #[test]
     fn elastic_names_are_injective() {
@@ -151,22 +185,7 @@ mod tests {
             see(&base, Some(twist));
         }
         see(&base, None);
-        type Change = dyn Fn(&mut ElasticScene, f64);
-        let change: &[&Change] = &[
-            &|s, f| s.rod.slenderness *= f,
-            &|s, f| s.rod.twist_ratio *= f,
-            &|s, f| s.rod.stretch_ratio *= f,
-            &|s, f| s.rod.contact.as_mut().unwrap().stiffness *= f,
-            &|s, f| s.rod.friction.as_mut().unwrap().ratio *= f,
-            &|s, f| s.rod.friction.as_mut().unwrap().range = FrictionRange::TimesContact(f),
-            &|s, f| s.imperfection *= f,
-            &|s, f| s.charge.duration *= f,
-            &|s, f| s.discharge.until_released *= f,
-            &|s, f| s.discharge.longest *= f,
-            &|s, f| s.accuracy.tolerance *= f,
-            &|s, f| s.accuracy.gamma *= f,
-        ];
-        for change in change {
+        for change in NUMBERS {
             for factor in [0.5, 0.75, 1.0 / 3.0, above(1.0)] {
                 let mut scene = base.clone();
                 change(&mut scene, factor);
@@ -176,23 +195,7 @@ mod tests {
                 see(&scene, Some(0.25));
             }
         }
-        let change: &[&dyn Fn(&mut ElasticScene)] = &[
-            &|s| s.rod.contact = None,
-            &|s| s.rod.friction = None,
-            &|s| (s.rod.contact, s.rod.friction) = (None, None),
-            &|s| s.rod.friction.as_mut().unwrap().range = FrictionRange::Contact,
-            &|s| s.rod.n_edges = 100,
-            &|s| s.rod.reading = Reading::Hard,
-            &|s| s.seed = 7,
-            &|s| s.cuts = Cuts::NearTies,
-            &|s| s.cuts = Cuts::All(3),
-            &|s| s.timeline.closures = 0,
-            &|s| s.accuracy.reuse = 1,
-            &|s| *s = ElasticScene::published(Preset::Standard),
-            &|s| *s = ElasticScene::published(Preset::Paper),
-            &|s| s.fixed_cuts = Some(BTreeMap::from([("3_1 0".to_owned(), vec![0.5])])),
-        ];
-        for change in change {
+        for change in CHOICES {
             let mut scene = base.clone();
             change(&mut scene);
             see(&scene, Some(0.0));

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 use serde_json::json;
-use topo_rod::{ChargedRod, Guards, RodSample, energy_density};
+use topo_rod::{ChargedRod, Guards, RodParameters, RodSample, energy_density};
 
 use super::job::{CaseJob, FollowedCut};
 use crate::LabError;
@@ -114,26 +114,40 @@ fn snapshot_indices(samples: &[RodSample], start: f64) -> Vec<usize> {
 /// Writes the folder of a case; what is there of an earlier run is replaced.
 pub(super) fn write_case(made: &MadeCase<'_>, place: &Place<'_>) -> Result<(), LabError> {
     let MadeCase {
-        job,
         charged,
         runs,
         outcome,
         charge_seconds,
+        ..
     } = *made;
-    let rows = &outcome.rows;
-    let CaseJob {
-        scene,
-        case,
-        tight,
-        table,
-    } = *job;
-    let area = std::f64::consts::PI;
     let mut folder = place.open()?;
+    folder.table("charged.csv", &charged_vertices(charged))?;
+    let samples = &charged.record().samples;
+    let series: Vec<_> = samples.iter().map(|s| series_row(None, s, None)).collect();
+    folder.table("charge.csv", &series)?;
+    let series: Vec<_> = runs.iter().flat_map(run_series).collect();
+    folder.table("series.csv", &series)?;
+    let rod = &made.job.case.rod;
+    let snapshots: Vec<_> = runs
+        .iter()
+        .flat_map(|run| run_snapshots(rod, run))
+        .collect();
+    folder.table("snapshots.csv", &snapshots)?;
+    let mut run = folder.about(outcome, about(made)?);
+    let cpu_seconds: f64 = outcome.rows.iter().map(|r| r.cpu_seconds).sum();
+    run["timings"] = json!({ "charge_cpu_seconds": charge_seconds, "cpu_seconds": cpu_seconds });
+    folder.finish(&run)
+}
+
+/// Area of the cross-section, in h².
+const AREA: f64 = std::f64::consts::PI;
+
+fn charged_vertices(charged: &ChargedRod) -> Vec<ChargedVertex> {
     let state = charged.state();
-    let vertices: Vec<ChargedVertex> = (0..state.n_vertices())
+    (0..state.n_vertices())
         .map(|i| {
             let x = state.vertices()[i];
-            let (s, density) = (i as f64 * state.rest_length(), charged.density()[i] * area);
+            let (s, density) = (i as f64 * state.rest_length(), charged.density()[i] * AREA);
             ChargedVertex {
                 s,
                 x: x.x,
@@ -143,53 +157,53 @@ pub(super) fn write_case(made: &MadeCase<'_>, place: &Place<'_>) -> Result<(), L
                 energy_density: density,
             }
         })
-        .collect();
-    folder.table("charged.csv", &vertices)?;
-    let series: Vec<_> = charged
-        .record()
-        .samples
-        .iter()
-        .map(|s| series_row(None, s, None))
-        .collect();
-    folder.table("charge.csv", &series)?;
-    let mut series = Vec::new();
+        .collect()
+}
+
+fn run_series(run: &FollowedCut) -> impl Iterator<Item = SeriesRow<'_>> {
+    let (discharge, timeline) = (&run.discharge, &run.timeline);
+    let samples = discharge.record.samples.iter().enumerate();
+    samples.map(move |(k, s)| series_row(Some(discharge.at), s, Some((timeline, k))))
+}
+
+fn run_snapshots(rod: &RodParameters, run: &FollowedCut) -> Vec<SnapshotVertex> {
+    let discharge = &run.discharge;
+    let samples = &discharge.record.samples;
     let mut snapshots = Vec::new();
-    for FollowedCut {
-        discharge,
-        timeline,
-        ..
-    } in runs
-    {
-        let samples = &discharge.record.samples;
-        series.extend(
-            samples
+    for k in snapshot_indices(samples, discharge.start) {
+        let state = &samples[k].state;
+        let density = energy_density(rod, state);
+        snapshots.extend(
+            state
+                .vertices()
                 .iter()
                 .enumerate()
-                .map(|(k, s)| series_row(Some(discharge.at), s, Some((timeline, k)))),
+                .map(|(i, x)| SnapshotVertex {
+                    cut: discharge.at,
+                    time: samples[k].time,
+                    s: i as f64 * state.rest_length(),
+                    x: x.x,
+                    y: x.y,
+                    z: x.z,
+                    energy_density: density[i] * AREA,
+                    twist: state.twists()[i] / state.rest_length(),
+                }),
         );
-        for k in snapshot_indices(samples, discharge.start) {
-            let state = &samples[k].state;
-            let density = energy_density(&case.rod, state);
-            snapshots.extend(
-                state
-                    .vertices()
-                    .iter()
-                    .enumerate()
-                    .map(|(i, x)| SnapshotVertex {
-                        cut: discharge.at,
-                        time: samples[k].time,
-                        s: i as f64 * state.rest_length(),
-                        x: x.x,
-                        y: x.y,
-                        z: x.z,
-                        energy_density: density[i] * area,
-                        twist: state.twists()[i] / state.rest_length(),
-                    }),
-            );
-        }
     }
-    folder.table("series.csv", &series)?;
-    folder.table("snapshots.csv", &snapshots)?;
+    snapshots
+}
+
+/// What `run.json` says of the case.
+fn about(made: &MadeCase<'_>) -> Result<About, LabError> {
+    let MadeCase {
+        job, charged, runs, ..
+    } = *made;
+    let CaseJob {
+        scene,
+        case,
+        tight,
+        table,
+    } = *job;
     let entry = table.get(&case.knot)?;
     let cuts: Vec<_> = runs
         .iter()
@@ -205,7 +219,7 @@ pub(super) fn write_case(made: &MadeCase<'_>, place: &Place<'_>) -> Result<(), L
         .iter()
         .map(|r| r.discharge.record.report.ledger_residual)
         .fold(charged.record().report.ledger_residual, f64::max);
-    let about = About {
+    Ok(About {
         case: value(case),
         scene: value(scene),
         seed: Some(case.seed),
@@ -219,9 +233,5 @@ pub(super) fn write_case(made: &MadeCase<'_>, place: &Place<'_>) -> Result<(), L
             "charge": charged.record().report,
             "cuts": cuts,
         }),
-    };
-    let mut run = folder.about(outcome, about);
-    let cpu_seconds: f64 = rows.iter().map(|r| r.cpu_seconds).sum();
-    run["timings"] = json!({ "charge_cpu_seconds": charge_seconds, "cpu_seconds": cpu_seconds });
-    folder.finish(&run)
+    })
 }

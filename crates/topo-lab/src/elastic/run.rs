@@ -45,10 +45,7 @@ pub(crate) fn charge(job: &CaseJob<'_>, interrupt: &Interrupt) -> Result<Charged
         tight,
         table,
     } = *job;
-    let refuse = |source| LabError::Rod {
-        case: scene.case_name(case),
-        source,
-    };
+    let refuse = |source| job.refused(source);
     let entry = table.get(&case.knot)?;
     let centreline = tight.centreline()?;
     let battery = RodBattery::new(&case.rod, &scene.accuracy, Guards::default(), &centreline);
@@ -96,12 +93,7 @@ pub(crate) fn run(
     job: &CaseJob<'_>,
     place: &Place<'_>,
 ) -> Result<Option<Outcome<SweepRow>>, LabError> {
-    let CaseJob { scene, case, .. } = *job;
     let (folder, interrupt) = (place.folder, &place.settings.interrupt);
-    let refuse = |source| LabError::Rod {
-        case: scene.case_name(case),
-        source,
-    };
     let clock = CpuClock::start();
     let ChargedCase {
         rod: charged,
@@ -111,46 +103,15 @@ pub(crate) fn run(
     if interrupt.is_requested() {
         return Ok(None);
     }
-    let sites: Vec<f64> = match &scene.cuts {
-        _ if scene.fixed_cuts.is_some() => {
-            let fixed = scene.fixed_cuts.as_ref();
-            fixed
-                .and_then(|cuts| cuts.get(&case.state()))
-                .cloned()
-                .unwrap_or_default()
-        }
-        Cuts::Argmax => vec![charged.cut_candidates(0.0)[0].at],
-        Cuts::NearTies => charged
-            .cut_candidates(NEAR_TIE)
-            .iter()
-            .map(|c| c.at)
-            .collect(),
-        Cuts::All(k) => (0..*k).map(|i| i as f64 / *k as f64).collect(),
-        Cuts::At(places) => places.clone(),
-    };
+    let sites = sites(job, &charged);
     let mut base = charged_row(job, &charged);
     base.energy_other_image = energy_other_image;
     let mut runs = Vec::new();
     if charged.record().report.stop.is_success() {
         for &at in &sites {
             let clock = CpuClock::start();
-            let discharge = charged
-                .cut(CutSite::At(at))
-                .and_then(|c| c.discharge(&scene.discharge, interrupt))
-                .map_err(refuse)?;
-            if interrupt.is_requested() {
+            let Some(mut run) = follow(job, &charged, at, interrupt)? else {
                 return Ok(None);
-            }
-            let timeline = timeline(job, &discharge)?;
-            let released = |of: f64| {
-                DischargeTimes::of(&discharge.record.curve, &ELASTIC, of, &ELASTIC_SHARES)
-            };
-            let mut run = FollowedCut {
-                times: released(discharge.start),
-                times_after_cut: released(discharge.after_cut),
-                discharge,
-                timeline,
-                row: SweepRow::default(),
             };
             let cpu_seconds = clock.seconds() + charge_seconds / sites.len() as f64;
             run.row = discharge_row(&base, &run, cpu_seconds);
@@ -184,6 +145,51 @@ pub(crate) fn run(
         return Err(error);
     }
     Ok(Some(outcome))
+}
+
+/// Where the scene cuts the rod.
+fn sites(job: &CaseJob<'_>, charged: &ChargedRod) -> Vec<f64> {
+    let CaseJob { scene, case, .. } = *job;
+    match &scene.cuts {
+        _ if scene.fixed_cuts.is_some() => {
+            let fixed = scene.fixed_cuts.as_ref();
+            fixed
+                .and_then(|cuts| cuts.get(&case.state()))
+                .cloned()
+                .unwrap_or_default()
+        }
+        Cuts::Argmax => vec![charged.cut_candidates(0.0)[0].at],
+        Cuts::NearTies => charged
+            .cut_candidates(NEAR_TIE)
+            .iter()
+            .map(|c| c.at)
+            .collect(),
+        Cuts::All(k) => (0..*k).map(|i| i as f64 / *k as f64).collect(),
+        Cuts::At(places) => places.clone(),
+    }
+}
+
+/// Follows the discharge after a cut; its row is still blank. `None` when interrupted.
+fn follow(
+    job: &CaseJob<'_>,
+    charged: &ChargedRod,
+    at: f64,
+    interrupt: &Interrupt,
+) -> Result<Option<FollowedCut>, LabError> {
+    let discharge = job.discharge(charged, CutSite::At(at), &job.scene.discharge, interrupt)?;
+    if interrupt.is_requested() {
+        return Ok(None);
+    }
+    let timeline = timeline(job, &discharge)?;
+    let released =
+        |of: f64| DischargeTimes::of(&discharge.record.curve, &ELASTIC, of, &ELASTIC_SHARES);
+    Ok(Some(FollowedCut {
+        times: released(discharge.start),
+        times_after_cut: released(discharge.after_cut),
+        discharge,
+        timeline,
+        row: SweepRow::default(),
+    }))
 }
 
 /// Why a case did not come to its end.

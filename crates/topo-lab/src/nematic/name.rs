@@ -186,6 +186,54 @@ mod tests {
     use super::*;
     use crate::preset::Preset;
 
+    /// A number of a scene changed by a factor.
+    const NUMBERS: [fn(&mut NematicScene, f64); 12] = [
+        |s, f| s.nematic.radius *= f,
+        |s, f| s.nematic.spacing *= f,
+        |s, f| s.nematic.cell[2] *= f,
+        |s, f| s.nematic.anchoring = Anchoring::Weak(f),
+        |s, f| s.nematic.material.b *= f,
+        |s, f| s.nematic.material.viscosity *= f,
+        |s, f| s.nematic.material.surface_order = Some(f),
+        |s, f| {
+            s.nematic.field = Some(ExternalField {
+                vector: [0.0, 0.0, 1.0],
+                anisotropy: f,
+            });
+        },
+        |s, f| s.charge.tolerance *= f,
+        |s, f| s.switch.ramp = Some(f),
+        |s, f| s.discharge.until_released *= f,
+        |s, f| s.accuracy.tolerance *= f,
+    ];
+
+    /// A choice of a scene made in another way.
+    const CHOICES: [fn(&mut NematicScene); 9] = [
+        |_| {},
+        |s| s.charges = vec![11],
+        |s| s.flowing = None,
+        |s| (s.flowing, s.flow.as_mut().unwrap().boundary_residual) = (None, 0.1),
+        |s| s.nematic.particle = false,
+        |s| (s.nematic.particle, s.charges) = (false, vec![3]),
+        |s| s.nematic.boundary = Boundary::NodeMask,
+        |s| s.nematic.periodic = true,
+        |s| s.accuracy.precision = Precision::Single,
+    ];
+
+    const PATTERNS: [SurfacePattern; 5] = [
+        SurfacePattern::Charge(-1),
+        SurfacePattern::Homeotropic,
+        SurfacePattern::Planar {
+            axis: [0.0, 0.0, 1.0],
+        },
+        SurfacePattern::Planar {
+            axis: [1.0, 0.0, 1.0],
+        },
+        SurfacePattern::Uniform {
+            director: [0.0, 0.0, 1.0],
+        },
+    ];
+
     /// Each setting of a scene changed by itself, by a round number and by the least that a number can change.
     #[test]
     fn nematic_names_are_injective() {
@@ -197,27 +245,7 @@ mod tests {
             *names.entry(name).or_default() += 1;
         };
         let above = |x: f64| f64::from_bits(x.to_bits() + 1);
-        type Change = dyn Fn(&mut NematicScene, f64);
-        let change: &[&Change] = &[
-            &|s, f| s.nematic.radius *= f,
-            &|s, f| s.nematic.spacing *= f,
-            &|s, f| s.nematic.cell[2] *= f,
-            &|s, f| s.nematic.anchoring = Anchoring::Weak(f),
-            &|s, f| s.nematic.material.b *= f,
-            &|s, f| s.nematic.material.viscosity *= f,
-            &|s, f| s.nematic.material.surface_order = Some(f),
-            &|s, f| {
-                s.nematic.field = Some(ExternalField {
-                    vector: [0.0, 0.0, 1.0],
-                    anisotropy: f,
-                });
-            },
-            &|s, f| s.charge.tolerance *= f,
-            &|s, f| s.switch.ramp = Some(f),
-            &|s, f| s.discharge.until_released *= f,
-            &|s, f| s.accuracy.tolerance *= f,
-        ];
-        for change in change {
+        for change in NUMBERS {
             for factor in [0.5, 0.75, 1.0 / 3.0, above(1.0)] {
                 let mut scene = base.clone();
                 change(&mut scene, factor);
@@ -226,37 +254,15 @@ mod tests {
                 see(&mut names, &scene);
             }
         }
-        let patterned = |pattern: SurfacePattern| {
-            move |s: &mut NematicScene| {
-                s.charges.clear();
-                s.nematic.pattern = pattern.clone();
-            }
-        };
-        let change: &[&dyn Fn(&mut NematicScene)] = &[
-            &|_| {},
-            &|s| s.charges = vec![11],
-            &|s| s.flowing = None,
-            &|s| (s.flowing, s.flow.as_mut().unwrap().boundary_residual) = (None, 0.1),
-            &|s| s.nematic.particle = false,
-            &|s| (s.nematic.particle, s.charges) = (false, vec![3]),
-            &|s| s.nematic.boundary = Boundary::NodeMask,
-            &|s| s.nematic.periodic = true,
-            &|s| s.accuracy.precision = Precision::Single,
-            &patterned(SurfacePattern::Charge(-1)),
-            &patterned(SurfacePattern::Homeotropic),
-            &patterned(SurfacePattern::Planar {
-                axis: [0.0, 0.0, 1.0],
-            }),
-            &patterned(SurfacePattern::Planar {
-                axis: [1.0, 0.0, 1.0],
-            }),
-            &patterned(SurfacePattern::Uniform {
-                director: [0.0, 0.0, 1.0],
-            }),
-        ];
-        for change in change {
+        for change in CHOICES {
             let mut scene = base.clone();
             change(&mut scene);
+            see(&mut names, &scene);
+        }
+        for pattern in PATTERNS {
+            let mut scene = base.clone();
+            scene.charges.clear();
+            scene.nematic.pattern = pattern;
             see(&mut names, &scene);
         }
         assert!(names.values().all(|n| *n == 1), "{names:#?}");

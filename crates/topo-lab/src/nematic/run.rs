@@ -1,14 +1,16 @@
 //! One case: charge a colloid, switch its anchoring, follow the discharge, and write a folder.
 
+use std::path::{Path, PathBuf};
+
 use serde_json::json;
 use topo_analysis::{
     DischargeTimes, NEMATIC_SHARES, NematicRow, NematicSample, Warnings, late_rate,
 };
 use topo_core::{FileError, StopReason, load_checkpoint, save_checkpoint};
 use topo_nematic::{
-    ChargeReport, ChargedNematic, Discharge, DischargeSettings, FinalSource, FlowCoupling,
-    MinimumState, NematicAccuracy, NematicBattery, NematicError, NematicState, Phase, Progress,
-    RunHooks, Threads,
+    ChargeReport, ChargedNematic, Discharge, DischargeSettings, FinalSource, FinalState,
+    FlowCoupling, MinimumState, NematicAccuracy, NematicBattery, NematicError, NematicState, Phase,
+    Progress, RunHooks, SwitchedNematic, Threads,
 };
 
 use super::case::NematicCase;
@@ -57,6 +59,22 @@ impl CaseRun<'_> {
         self.place.working(&told(p));
     }
 
+    fn refuse(&self, source: NematicError) -> LabError {
+        LabError::Nematic {
+            case: self.place.name.to_owned(),
+            source,
+        }
+    }
+
+    fn checkpoint(&self, phase: &str) -> PathBuf {
+        let Place {
+            folder,
+            fingerprint: mark,
+            ..
+        } = *self.place;
+        folder.join(format!("{phase}-{mark}.checkpoint"))
+    }
+
     fn attempt(&self) -> Result<Option<Outcome<NematicRow>>, LabError> {
         let Place {
             folder,
@@ -64,10 +82,7 @@ impl CaseRun<'_> {
             ..
         } = *self.place;
         let interrupt = &sweep.interrupt;
-        let refuse = |source| LabError::Nematic {
-            case: self.place.name.to_owned(),
-            source,
-        };
+        let refuse = |source| self.refuse(source);
         make_folder(folder)?;
         let accuracy = NematicAccuracy {
             threads: self.threads,
@@ -75,12 +90,10 @@ impl CaseRun<'_> {
         };
         let battery = NematicBattery::new(&self.case.nematic, &accuracy).map_err(refuse)?;
         let mut tell = |p: &Progress| self.tell(p);
-        let mark = self.place.fingerprint;
-        forget_checkpoints(folder, mark)?;
-        let checkpoint = |phase: &str| folder.join(format!("{phase}-{mark}.checkpoint"));
+        forget_checkpoints(folder, self.place.fingerprint)?;
         let mut hooks = RunHooks::new(interrupt)
             .with_progress(&mut tell)
-            .with_checkpoint(&checkpoint("charge"), sweep.checkpoint_seconds);
+            .with_checkpoint(&self.checkpoint("charge"), sweep.checkpoint_seconds);
         let charged = battery
             .charge(&self.scene.charge, &mut hooks)
             .map_err(refuse)?;
@@ -91,6 +104,31 @@ impl CaseRun<'_> {
         let end = released
             .final_state(&mut RunHooks::new(interrupt).with_progress(&mut tell))
             .map_err(refuse)?;
+        let Some((run, kept)) = self.discharge(&charged, &released, &end)? else {
+            return Ok(None);
+        };
+        let row = self.row(&battery, &charged, &run);
+        let outcome = Outcome {
+            failure: failure(&charged, &run),
+            rows: vec![row],
+        };
+        self.write(&charged, &run, &kept, &outcome)?;
+        forget_checkpoints(folder, "")?;
+        Ok(Some(outcome))
+    }
+
+    /// Follows the discharge and keeps what snapshots need; `None` when interrupted.
+    fn discharge(
+        &self,
+        charged: &ChargedNematic,
+        released: &SwitchedNematic,
+        end: &FinalState,
+    ) -> Result<Option<(Discharge, Kept)>, LabError> {
+        let Place {
+            folder,
+            settings: sweep,
+            ..
+        } = *self.place;
         let settings = DischargeSettings {
             flow: self.case.flow,
             ..self.scene.discharge.clone()
@@ -101,17 +139,8 @@ impl CaseRun<'_> {
         } else {
             ["snapshots", "discharge"]
         };
-        let place = checkpoint(snapshots);
-        let there = place.exists();
-        let mut kept: Kept = load_checkpoint(&place, KEPT).unwrap_or_default();
-        if kept == Kept::default() {
-            if there {
-                self.tell_damaged();
-            }
-            // what was seen before cannot be seen again without going through the discharge again
-            forget_file(&checkpoint(discharge))?;
-            field::forget(folder)?;
-        }
+        let (place, discharge) = (self.checkpoint(snapshots), self.checkpoint(discharge));
+        let mut kept = self.kept_before(&place, &discharge)?;
         if sweep.keep_fields {
             let state = charged.state();
             FieldSnapshot::of(None, state, None, centre(state)).write(folder, 0)?;
@@ -120,7 +149,7 @@ impl CaseRun<'_> {
         let mut see =
             |s: &topo_nematic::NematicSample, state: &NematicState, flow: Option<&FlowCoupling>| {
                 let share = released
-                    .stored(&end)
+                    .stored(end)
                     .map_or(1.0, |stored| (s.energy.total() - end.energy) / stored);
                 if failed.is_none() && kept.see(s.time, share, state, flow) {
                     let saved = self
@@ -129,25 +158,33 @@ impl CaseRun<'_> {
                     failed = saved.err();
                 }
             };
-        let mut hooks = RunHooks::new(interrupt)
+        let mut tell = |p: &Progress| self.tell(p);
+        let mut hooks = RunHooks::new(&sweep.interrupt)
             .with_progress(&mut tell)
             .with_samples(&mut see)
-            .with_checkpoint(&checkpoint(discharge), sweep.checkpoint_seconds);
-        let run = released.discharge(&settings, &mut hooks).map_err(refuse)?;
+            .with_checkpoint(&discharge, sweep.checkpoint_seconds);
+        let run = released.discharge(&settings, &mut hooks);
+        let run = run.map_err(|source| self.refuse(source))?;
         if let Some(error) = failed {
             return Err(error);
         }
-        if run.record.report.stop == StopReason::Interrupted {
-            return Ok(None);
+        let is_over = run.record.report.stop != StopReason::Interrupted;
+        Ok(is_over.then_some((run, kept)))
+    }
+
+    /// What a run before has kept in `place`; where that is nothing, the discharge begins anew.
+    fn kept_before(&self, place: &Path, discharge: &Path) -> Result<Kept, LabError> {
+        let there = place.exists();
+        let kept: Kept = load_checkpoint(place, KEPT).unwrap_or_default();
+        if kept == Kept::default() {
+            if there {
+                self.tell_damaged();
+            }
+            // what was seen before cannot be seen again without going through the discharge again
+            forget_file(discharge)?;
+            field::forget(self.place.folder)?;
         }
-        let row = self.row(&battery, &charged, &run);
-        let outcome = Outcome {
-            failure: failure(&charged, &run),
-            rows: vec![row],
-        };
-        self.write(&charged, &run, &kept, &outcome)?;
-        forget_checkpoints(folder, "")?;
-        Ok(Some(outcome))
+        Ok(kept)
     }
 
     fn keep_field(
@@ -216,30 +253,7 @@ impl CaseRun<'_> {
         for text in battery.warnings() {
             row.warnings.push(text.as_str());
         }
-        if !charge.is_converged() {
-            row.warnings.push(format!(
-                "charge not converged: {}, rms H {:.1e}",
-                charge.stop, charge.rms_field
-            ));
-        }
-        if let Some(text) = stability_warning(charge) {
-            row.warnings.push(text);
-        }
-        if !discharge.stop.is_success() {
-            row.warnings
-                .push(format!("discharge stopped: {}", discharge.stop));
-        }
-        final_state_warnings(run, &mut row.warnings);
-        if discharge.stop == StopReason::ReachedTime {
-            row.warnings
-                .push("discharge not finished in the longest time followed");
-        }
-        if discharge.ledger_residual > 0.01 {
-            row.warnings.push(format!(
-                "energy account open by {:.1} %",
-                100.0 * discharge.ledger_residual
-            ));
-        }
+        run_warnings(charge, run, &mut row.warnings);
         row
     }
 
@@ -296,6 +310,33 @@ fn failure(charged: &ChargedNematic, run: &Discharge) -> Option<String> {
         return Some(format!("charge not converged: {}", charge.stop));
     }
     (!stop.is_success()).then(|| format!("discharge stopped: {stop}"))
+}
+
+/// What went otherwise than asked for.
+fn run_warnings(charge: &ChargeReport, run: &Discharge, warnings: &mut Warnings) {
+    let discharge = &run.record.report;
+    if !charge.is_converged() {
+        warnings.push(format!(
+            "charge not converged: {}, rms H {:.1e}",
+            charge.stop, charge.rms_field
+        ));
+    }
+    if let Some(text) = stability_warning(charge) {
+        warnings.push(text);
+    }
+    if !discharge.stop.is_success() {
+        warnings.push(format!("discharge stopped: {}", discharge.stop));
+    }
+    final_state_warnings(run, warnings);
+    if discharge.stop == StopReason::ReachedTime {
+        warnings.push("discharge not finished in the longest time followed");
+    }
+    if discharge.ledger_residual > 0.01 {
+        warnings.push(format!(
+            "energy account open by {:.1} %",
+            100.0 * discharge.ledger_residual
+        ));
+    }
 }
 
 /// What is to be said of the state that released energy counts down to.

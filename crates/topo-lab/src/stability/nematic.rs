@@ -77,7 +77,7 @@ impl Case {
             .unwrap_or_else(|refused| Verdict::stopped(format!("refused: {refused}"), 0))
     }
 
-    fn try_run(&self, preset: Preset, interrupt: &Interrupt) -> Result<Verdict, NematicError> {
+    fn battery(&self, preset: Preset) -> Result<NematicBattery, NematicError> {
         let parameters = NematicParameters {
             radius: self.radius,
             spacing: self.spacing,
@@ -87,35 +87,39 @@ impl Case {
             material: self.material,
             ..NematicParameters::default()
         };
-        let (max_steps, released) = match preset {
-            Preset::Draft => (4000, 0.99),
-            _ => (100_000, 0.9995),
-        };
         let accuracy = NematicAccuracy {
             tolerance: self.tolerance,
-            max_steps,
+            max_steps: max_steps(preset),
             memory_limit: Some(2 << 30),
             ..NematicAccuracy::default()
         };
+        NematicBattery::new(&parameters, &accuracy)
+    }
+
+    fn charge(
+        &self,
+        battery: &NematicBattery,
+        preset: Preset,
+        interrupt: &Interrupt,
+    ) -> Result<ChargedNematic, NematicError> {
         let settings = ChargeSettings {
             tolerance: if preset == Preset::Draft { 1e-6 } else { 1e-8 },
-            max_steps,
+            max_steps: max_steps(preset),
             ..ChargeSettings::default()
         };
-        let discharge = DischargeSettings {
-            until_released: released,
-            flow: self.has_flow.then(FlowParameters::default),
-            ..DischargeSettings::default()
-        };
-        let hooks = || RunHooks::new(interrupt);
-        let battery = NematicBattery::new(&parameters, &accuracy)?;
-        let mut charged = match self.start {
-            Start::Uniform => battery.charge(&settings, &mut hooks())?,
+        let mut hooks = RunHooks::new(interrupt);
+        match self.start {
+            Start::Uniform => battery.charge(&settings, &mut hooks),
             Start::Random { seed, order } => {
-                let start = random(&battery, seed, order * self.material.order())?;
-                battery.charge_from(&start, &settings, &mut hooks())?
+                let start = random(battery, seed, order * self.material.order())?;
+                battery.charge_from(&start, &settings, &mut hooks)
             }
-        };
+        }
+    }
+
+    fn try_run(&self, preset: Preset, interrupt: &Interrupt) -> Result<Verdict, NematicError> {
+        let battery = self.battery(preset)?;
+        let mut charged = self.charge(&battery, preset, interrupt)?;
         let report = charged.report();
         let mut found = broken(charged.state());
         if !report.is_converged() {
@@ -141,9 +145,18 @@ impl Case {
                 }
             }
         }
+        let discharge = DischargeSettings {
+            until_released: if preset == Preset::Draft {
+                0.99
+            } else {
+                0.9995
+            },
+            flow: self.has_flow.then(FlowParameters::default),
+            ..DischargeSettings::default()
+        };
         let run = charged
             .switch(&switch)?
-            .discharge(&discharge, &mut hooks())?;
+            .discharge(&discharge, &mut RunHooks::new(interrupt))?;
         found += broken(&run.state);
         let report = &run.record.report;
         // A ramp does work: there the books must close instead.
@@ -199,6 +212,15 @@ impl Case {
     }
 }
 
+/// Most steps of a charge and of a discharge.
+fn max_steps(preset: Preset) -> u64 {
+    if preset == Preset::Draft {
+        4000
+    } else {
+        100_000
+    }
+}
+
 /// 1 if a number of the field is not finite.
 fn broken(state: &NematicState) -> u32 {
     u32::from(!state.q_tensor().iter().all(|x| x.is_finite()))
@@ -215,18 +237,37 @@ fn random(battery: &NematicBattery, seed: u64, order: f64) -> Result<NematicStat
     })
 }
 
+/// A case with the axes of its map and where it lies on them.
+type Placed = ([&'static str; 2], [String; 2], Case);
+
 /// All runs.
 pub(super) fn cells(preset: Preset) -> Vec<Cell> {
-    let mut cells = Vec::new();
-    let mut add = |axes: [&'static str; 2], at: [String; 2], case: Case| {
-        cells.push(Cell {
+    let maps = [
+        windings(),
+        surfaces(),
+        flows(),
+        phases(),
+        turns(),
+        ramps(),
+        random_starts(),
+    ];
+    maps.into_iter()
+        .flatten()
+        .map(|(axes, at, case)| Cell {
             axes,
             at,
             is_inner: case.is_inner,
             run: Box::new(move |interrupt| case.run(preset, interrupt)),
-        });
-    };
-    let text = |x: f64, y: f64| [x.to_string(), y.to_string()];
+        })
+        .collect()
+}
+
+fn text(x: f64, y: f64) -> [String; 2] {
+    [x.to_string(), y.to_string()]
+}
+
+fn windings() -> Vec<Placed> {
+    let mut map = Vec::new();
     for spacing in [0.5, 1.0, 1.5, 2.0, 2.4, 3.0] {
         for q in [1, 2, 4, 8, 12, 20, 40] {
             let case = Case {
@@ -235,9 +276,14 @@ pub(super) fn cells(preset: Preset) -> Vec<Cell> {
                 is_inner: q <= 12 && spacing <= 2.0,
                 ..middle()
             };
-            add(["q", "spacing"], text(q.into(), spacing), case);
+            map.push((["q", "spacing"], text(q.into(), spacing), case));
         }
     }
+    map
+}
+
+fn surfaces() -> Vec<Placed> {
+    let mut map = Vec::new();
     for (name, anchoring) in [
         ("free", Anchoring::Free),
         ("weak 0.1", Anchoring::Weak(0.1)),
@@ -253,9 +299,14 @@ pub(super) fn cells(preset: Preset) -> Vec<Cell> {
                 ..middle()
             };
             let at = [format!("{edge:.2}"), name.to_owned()];
-            add(["cell edge over radius", "anchoring"], at, case);
+            map.push((["cell edge over radius", "anchoring"], at, case));
         }
     }
+    map
+}
+
+fn flows() -> Vec<Placed> {
+    let mut map = Vec::new();
     for viscosity in [1e-3, 1e-2, 1.38, 1e2, 1e3] {
         for flow_alignment in [0.0, 0.3, 0.6, 1.0, 2.0] {
             let case = Case {
@@ -268,9 +319,14 @@ pub(super) fn cells(preset: Preset) -> Vec<Cell> {
                 is_inner: viscosity >= 1.0 && flow_alignment <= 1.0,
                 ..middle()
             };
-            add(["chi", "eta"], text(flow_alignment, viscosity), case);
+            map.push((["chi", "eta"], text(flow_alignment, viscosity), case));
         }
     }
+    map
+}
+
+fn phases() -> Vec<Placed> {
+    let mut map = Vec::new();
     for tolerance in [1e-1, 1e-2, 1e-3, 3e-5, 1e-6, 1e-7] {
         // The uniform nematic is stable below A = 0.1062 and exists below 0.1195.
         for a in [-0.5, -0.19, 0.0, 0.1, 0.119, 0.2] {
@@ -284,22 +340,29 @@ pub(super) fn cells(preset: Preset) -> Vec<Cell> {
                 is_inner: a == -0.19 && (1e-6..=1e-3).contains(&tolerance),
                 ..middle()
             };
-            add(["A", "tolerance"], text(a, tolerance), case);
+            map.push((["A", "tolerance"], text(a, tolerance), case));
         }
     }
+    map
+}
+
+fn turns() -> Vec<Placed> {
+    let mut map = Vec::new();
     for each in [1e-4, 1e-2, 0.1] {
         for n in [0, 1, 2, 5] {
             let case = Case {
                 release: Release::Turns { n, each },
                 ..middle()
             };
-            add(
-                ["pattern switches", "time of each"],
-                text(n as f64, each),
-                case,
-            );
+            let axes = ["pattern switches", "time of each"];
+            map.push((axes, text(n as f64, each), case));
         }
     }
+    map
+}
+
+fn ramps() -> Vec<Placed> {
+    let mut map = Vec::new();
     let pattern = |pattern| SwitchTarget::Pattern {
         pattern,
         anchoring: Anchoring::Strong,
@@ -314,9 +377,14 @@ pub(super) fn cells(preset: Preset) -> Vec<Cell> {
                 release: Release::Ramp(ramp, to.clone()),
                 ..middle()
             };
-            add(["ramp", "to"], [ramp.to_string(), name.to_owned()], case);
+            map.push((["ramp", "to"], [ramp.to_string(), name.to_owned()], case));
         }
     }
+    map
+}
+
+fn random_starts() -> Vec<Placed> {
+    let mut map = Vec::new();
     for order in [0.01, 1.0, 3.0] {
         for seed in 1..=4 {
             let case = Case {
@@ -325,12 +393,9 @@ pub(super) fn cells(preset: Preset) -> Vec<Cell> {
                 is_inner: false,
                 ..middle()
             };
-            add(
-                ["random start", "its order over equilibrium"],
-                text(seed as f64, order),
-                case,
-            );
+            let axes = ["random start", "its order over equilibrium"];
+            map.push((axes, text(seed as f64, order), case));
         }
     }
-    cells
+    map
 }

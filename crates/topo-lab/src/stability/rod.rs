@@ -121,103 +121,119 @@ impl Case {
     }
 }
 
+/// Cases over a plane of two settings.
+struct Map {
+    axes: [&'static str; 2],
+    xs: &'static [f64],
+    ys: &'static [f64],
+    case: fn(f64, f64) -> Case,
+}
+
+const TWISTS: [f64; 9] = [-20.0, -10.0, -4.0, -2.0, 0.0, 2.0, 4.0, 10.0, 20.0];
+const GAMMAS: [f64; 6] = [0.1, 1.0, 10.0, 100.0, 1e3, 1e4];
+const STIFFNESSES: [f64; 6] = [1.0, 5.0, 20.0, 100.0, 1e3, 1e4];
+
+const MAPS: [Map; 8] = [
+    Map {
+        axes: ["twist", "gamma"],
+        xs: &TWISTS,
+        ys: &GAMMAS,
+        case: |x, y| Case {
+            twist: x,
+            gamma: y,
+            ..MIDDLE
+        },
+    },
+    Map {
+        axes: ["twist of a figure-eight knot", "gamma"],
+        xs: &TWISTS,
+        ys: &GAMMAS,
+        case: |x, y| Case {
+            is_eight: true,
+            twist: x,
+            gamma: y,
+            ..MIDDLE
+        },
+    },
+    Map {
+        axes: ["edges", "twist"],
+        xs: &[16.0, 50.0, 100.0, 200.0, 400.0, 800.0, 1600.0, 4000.0],
+        ys: &[-4.0, -1.0, 0.0, 1.0, 4.0],
+        case: |x, y| Case {
+            n_edges: x as usize,
+            twist: y,
+            ..MIDDLE
+        },
+    },
+    Map {
+        axes: ["slenderness", "friction"],
+        xs: &[10.0, 20.0, 33.0, 50.0, 100.0, 300.0, 1000.0],
+        ys: &[0.0, 0.1, 1.0, 10.0, 100.0],
+        case: |x, y| Case {
+            slenderness: x,
+            friction: y,
+            ..MIDDLE
+        },
+    },
+    Map {
+        axes: ["contact stiffness", "tolerance"],
+        xs: &STIFFNESSES,
+        ys: &[1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7],
+        case: |x, y| Case {
+            contact: x,
+            tolerance: y,
+            ..MIDDLE
+        },
+    },
+    Map {
+        axes: ["friction", "twist"],
+        xs: &[0.0, 0.1, 1.0, 10.0, 100.0],
+        ys: &[-20.0, -4.0, -1.0, 0.0, 1.0, 4.0, 20.0],
+        case: |x, y| Case {
+            friction: x,
+            twist: y,
+            ..MIDDLE
+        },
+    },
+    Map {
+        axes: ["contact stiffness", "gamma"],
+        xs: &STIFFNESSES,
+        ys: &GAMMAS,
+        case: |x, y| Case {
+            contact: x,
+            gamma: y,
+            ..MIDDLE
+        },
+    },
+    Map {
+        axes: ["edges", "gamma"],
+        xs: &[16.0, 50.0, 100.0, 400.0],
+        ys: &GAMMAS,
+        case: |x, y| Case {
+            n_edges: x as usize,
+            gamma: y,
+            twist: 4.0,
+            ..MIDDLE
+        },
+    },
+];
+
 /// All runs.
 pub(super) fn cells(preset: Preset) -> Vec<Cell> {
     let mut cells = Vec::new();
-    let mut map = |axes: [&'static str; 2], xs: &[f64], ys: &[f64], set: fn(f64, f64) -> Case| {
-        for &y in ys {
-            for &x in xs {
-                let case = set(x, y);
+    for map in &MAPS {
+        for &y in map.ys {
+            for &x in map.xs {
+                let case = (map.case)(x, y);
                 cells.push(Cell {
-                    axes,
+                    axes: map.axes,
                     at: [x.to_string(), y.to_string()],
                     is_inner: case.is_inner(),
                     run: Box::new(move |interrupt| case.run(preset, interrupt)),
                 });
             }
         }
-    };
-    let twists = [-20.0, -10.0, -4.0, -2.0, 0.0, 2.0, 4.0, 10.0, 20.0];
-    let gammas = [0.1, 1.0, 10.0, 100.0, 1e3, 1e4];
-    map(["twist", "gamma"], &twists, &gammas, |x, y| Case {
-        twist: x,
-        gamma: y,
-        ..MIDDLE
-    });
-    map(
-        ["twist of a figure-eight knot", "gamma"],
-        &twists,
-        &gammas,
-        |x, y| Case {
-            is_eight: true,
-            twist: x,
-            gamma: y,
-            ..MIDDLE
-        },
-    );
-    let edges = [16.0, 50.0, 100.0, 200.0, 400.0, 800.0, 1600.0, 4000.0];
-    map(
-        ["edges", "twist"],
-        &edges,
-        &[-4.0, -1.0, 0.0, 1.0, 4.0],
-        |x, y| Case {
-            n_edges: x as usize,
-            twist: y,
-            ..MIDDLE
-        },
-    );
-    map(
-        ["slenderness", "friction"],
-        &[10.0, 20.0, 33.0, 50.0, 100.0, 300.0, 1000.0],
-        &[0.0, 0.1, 1.0, 10.0, 100.0],
-        |x, y| Case {
-            slenderness: x,
-            friction: y,
-            ..MIDDLE
-        },
-    );
-    let stiffnesses = [1.0, 5.0, 20.0, 100.0, 1e3, 1e4];
-    map(
-        ["contact stiffness", "tolerance"],
-        &stiffnesses,
-        &[1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7],
-        |x, y| Case {
-            contact: x,
-            tolerance: y,
-            ..MIDDLE
-        },
-    );
-    map(
-        ["friction", "twist"],
-        &[0.0, 0.1, 1.0, 10.0, 100.0],
-        &[-20.0, -4.0, -1.0, 0.0, 1.0, 4.0, 20.0],
-        |x, y| Case {
-            friction: x,
-            twist: y,
-            ..MIDDLE
-        },
-    );
-    map(
-        ["contact stiffness", "gamma"],
-        &stiffnesses,
-        &gammas,
-        |x, y| Case {
-            contact: x,
-            gamma: y,
-            ..MIDDLE
-        },
-    );
-    map(
-        ["edges", "gamma"],
-        &[16.0, 50.0, 100.0, 400.0],
-        &gammas,
-        |x, y| Case {
-            n_edges: x as usize,
-            gamma: y,
-            twist: 4.0,
-            ..MIDDLE
-        },
-    );
+    }
     cells
 }
 

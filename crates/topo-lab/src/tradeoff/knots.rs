@@ -1,7 +1,7 @@
 //! Settings of the knot generator: vertices a unit of length, length of the search, method.
 
 use topo_core::CpuClock;
-use topo_knots::{KnotTable, TightenSettings, second_opinion, tighten_entry};
+use topo_knots::{KnotEntry, KnotTable, TightenSettings, second_opinion, tighten_entry};
 
 use super::trial::{Outcome, REFERENCE, Trial};
 use crate::LabError;
@@ -28,83 +28,104 @@ pub(super) fn trials(preset: Preset) -> Result<Vec<Trial>, LabError> {
     let mut trials = Vec::new();
     for name in names {
         let entry = table.get(&name)?.into_owned();
-        let published = entry.length_over_radius;
-        trials.push(Trial {
-            case: name.clone(),
-            setting: REFERENCE,
-            value: "published".to_owned(),
-            run: Box::new(move |_, _| {
-                Ok(Some(Outcome {
-                    quantities: vec![(QUANTITY, published)],
-                    cpu_seconds: 0.0,
-                    peak_bytes: 0,
-                }))
-            }),
-        });
-        let mut tighten = |setting, value: String, settings: TightenSettings| {
-            let entry = entry.clone();
-            trials.push(Trial {
-                case: name.clone(),
-                setting,
-                value,
-                run: Box::new(move |meter, interrupt| {
-                    let (found, cpu_seconds, peak_bytes) =
-                        meter.measure(|| tighten_entry(&entry, &settings));
-                    let found = found.and_then(Result::ok).map(|t| t.length_over_radius);
-                    Ok((!interrupt.is_requested()).then_some(Outcome {
-                        quantities: vec![(QUANTITY, found)],
-                        cpu_seconds,
-                        peak_bytes,
-                    }))
-                }),
-            });
-        };
+        trials.push(published(&entry));
         for &per_unit in levels {
-            tighten("vertices", format!("{per_unit} a unit"), at(per_unit));
+            let value = format!("{per_unit} a unit");
+            trials.push(tightened(&entry, "vertices", value, at(per_unit)));
         }
-        for (value, change) in [
-            (
-                "no kicks",
-                TightenSettings {
-                    n_kicks: 0,
-                    n_kicks_a_start: 0,
-                    n_variants: 0,
-                    ..at(4.0)
-                },
-            ),
-            (
-                "three times the kicks",
-                TightenSettings {
-                    n_kicks: 12,
-                    n_variants: 3,
-                    ..at(4.0)
-                },
-            ),
-        ] {
-            tighten("search", format!("{value}, 4 a unit"), change);
+        for (search, settings) in searches() {
+            let value = format!("{search}, 4 a unit");
+            trials.push(tightened(&entry, "search", value, settings));
         }
-        for per_unit in SECOND {
-            let entry = entry.clone();
-            trials.push(Trial {
-                case: name.clone(),
-                setting: "method",
-                value: format!("augmented Lagrangian, {per_unit} a unit"),
-                run: Box::new(move |meter, interrupt| {
-                    let start = tighten_entry(&entry, &at(per_unit));
-                    let clock = CpuClock::start();
-                    let (found, _, peak_bytes) =
-                        meter.measure(|| start.ok().and_then(|s| second_opinion(&s).ok()));
-                    let found = found.flatten().map(|s| s.length_over_radius);
-                    Ok((!interrupt.is_requested()).then_some(Outcome {
-                        quantities: vec![(QUANTITY, found)],
-                        cpu_seconds: clock.seconds(),
-                        peak_bytes,
-                    }))
-                }),
-            });
-        }
+        trials.extend(SECOND.map(|per_unit| second(&entry, per_unit)));
     }
     Ok(trials)
+}
+
+/// Searches shorter and longer than that of the levels, at 4 vertices a unit.
+fn searches() -> [(&'static str, TightenSettings); 2] {
+    [
+        (
+            "no kicks",
+            TightenSettings {
+                n_kicks: 0,
+                n_kicks_a_start: 0,
+                n_variants: 0,
+                ..at(4.0)
+            },
+        ),
+        (
+            "three times the kicks",
+            TightenSettings {
+                n_kicks: 12,
+                n_variants: 3,
+                ..at(4.0)
+            },
+        ),
+    ]
+}
+
+/// The published ropelength.
+fn published(entry: &KnotEntry) -> Trial {
+    let published = entry.length_over_radius;
+    Trial {
+        case: entry.name.clone(),
+        setting: REFERENCE,
+        value: "published".to_owned(),
+        run: Box::new(move |_, _| {
+            Ok(Some(Outcome {
+                quantities: vec![(QUANTITY, published)],
+                cpu_seconds: 0.0,
+                peak_bytes: 0,
+            }))
+        }),
+    }
+}
+
+fn tightened(
+    entry: &KnotEntry,
+    setting: &'static str,
+    value: String,
+    settings: TightenSettings,
+) -> Trial {
+    let entry = entry.clone();
+    Trial {
+        case: entry.name.clone(),
+        setting,
+        value,
+        run: Box::new(move |meter, interrupt| {
+            let (found, cpu_seconds, peak_bytes) =
+                meter.measure(|| tighten_entry(&entry, &settings));
+            let found = found.and_then(Result::ok).map(|t| t.length_over_radius);
+            Ok((!interrupt.is_requested()).then_some(Outcome {
+                quantities: vec![(QUANTITY, found)],
+                cpu_seconds,
+                peak_bytes,
+            }))
+        }),
+    }
+}
+
+/// The second method, from a shape of the first, whose time does not count.
+fn second(entry: &KnotEntry, per_unit: f64) -> Trial {
+    let entry = entry.clone();
+    Trial {
+        case: entry.name.clone(),
+        setting: "method",
+        value: format!("augmented Lagrangian, {per_unit} a unit"),
+        run: Box::new(move |meter, interrupt| {
+            let start = tighten_entry(&entry, &at(per_unit));
+            let clock = CpuClock::start();
+            let (found, _, peak_bytes) =
+                meter.measure(|| start.ok().and_then(|s| second_opinion(&s).ok()));
+            let found = found.flatten().map(|s| s.length_over_radius);
+            Ok((!interrupt.is_requested()).then_some(Outcome {
+                quantities: vec![(QUANTITY, found)],
+                cpu_seconds: clock.seconds(),
+                peak_bytes,
+            }))
+        }),
+    }
 }
 
 fn at(per_unit: f64) -> TightenSettings {

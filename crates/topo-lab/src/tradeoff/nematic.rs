@@ -115,122 +115,145 @@ pub(super) fn resolution(spacing: f64, tolerance: f64) -> String {
     format!("h = {spacing}, {tolerance:e}")
 }
 
+/// A run with its case, its setting and the value of that.
+type Named = (String, &'static str, String, Run);
+
+/// Charges on which all settings but flow are compared.
+const CHARGES: [i32; 3] = [2, 5, 8];
+
 /// All runs, references first.
 pub(super) fn trials() -> Vec<Trial> {
-    let charges = [2, 5, 8];
-    let mut all: Vec<(String, &'static str, String, Run)> = Vec::new();
-    for q in charges {
-        let mut put =
-            |setting, value: String, run| all.push((format!("q = {q}"), setting, value, run));
-        let name = resolution;
-        put(
-            REFERENCE,
-            name(REFERENCE_SPACING, REFERENCE_TOLERANCE),
-            run(q, REFERENCE_SPACING, REFERENCE_TOLERANCE),
-        );
-        for spacing in SPACINGS {
-            for tolerance in TOLERANCES {
-                put(
-                    "resolution",
-                    name(spacing, tolerance),
-                    run(q, spacing, tolerance),
-                );
-            }
-        }
-        for (boundary, free) in [
-            (Boundary::NodeMask, FreeSurface::CutCell),
-            (Boundary::CutLink, FreeSurface::Staircase),
-            (Boundary::NodeMask, FreeSurface::Staircase),
-        ] {
-            for spacing in [MIDDLE_SPACING, 1.0] {
-                let run = Run {
-                    boundary,
-                    free,
-                    ..run(q, spacing, TOLERANCES[1])
-                };
-                let value = format!("{}, {}, h = {spacing}", boundary.name(), free.name());
-                put("boundary", value, run);
-            }
-        }
-    }
-    for q in BUCKLED {
-        let mut put = |setting, spacing, tolerance| {
-            let name = resolution(spacing, tolerance);
-            all.push((
-                format!("q = {q}"),
-                setting,
-                name,
-                run(q, spacing, tolerance),
-            ));
-        };
-        put(REFERENCE, REFERENCE_SPACING, REFERENCE_TOLERANCE);
-        for spacing in SPACINGS {
-            put("buckled ring", spacing, TOLERANCES[1]);
-        }
-    }
-    // the error in time alone, on one grid
-    for q in charges {
-        let mut put = |setting, value: String, run| {
-            all.push((
-                format!("q = {q}, h = {MIDDLE_SPACING}"),
-                setting,
-                value,
-                run,
-            ));
-        };
-        let name = |tolerance: f64| format!("{tolerance:e}");
-        let at = |tolerance| run(q, MIDDLE_SPACING, tolerance);
-        put(REFERENCE, name(FINEST_TOLERANCE), at(FINEST_TOLERANCE));
+    let grids = CHARGES.into_iter().flat_map(grids);
+    let buckled = BUCKLED.into_iter().flat_map(buckled);
+    let times = CHARGES.into_iter().flat_map(times);
+    let flows = FLOWING.into_iter().flat_map(flows);
+    let all = grids.chain(buckled).chain(times).chain(flows);
+    all.map(trial).collect()
+}
+
+/// Resolutions and boundary schemes.
+fn grids(q: i32) -> Vec<Named> {
+    let mut all = Vec::new();
+    let mut put = |setting, value: String, run| all.push((format!("q = {q}"), setting, value, run));
+    let name = resolution;
+    put(
+        REFERENCE,
+        name(REFERENCE_SPACING, REFERENCE_TOLERANCE),
+        run(q, REFERENCE_SPACING, REFERENCE_TOLERANCE),
+    );
+    for spacing in SPACINGS {
         for tolerance in TOLERANCES {
-            put("tolerance", name(tolerance), at(tolerance));
-        }
-        let mut single = at(TOLERANCES[2]);
-        single.accuracy.precision = Precision::Single;
-        put("storage", Precision::Single.name().to_owned(), single);
-        put(
-            "storage",
-            Precision::Double.name().to_owned(),
-            at(TOLERANCES[2]),
-        );
-    }
-    for q in FLOWING {
-        let mut put = |setting, value: String, tolerance: f64, residual: Option<f64>| {
-            let mut run = run(q, MIDDLE_SPACING, tolerance);
-            run.flow = residual.map(|boundary_residual| FlowParameters {
-                boundary_residual,
-                ..FlowParameters::default()
-            });
-            let case = format!("q = {q}, h = {MIDDLE_SPACING}, flow");
-            all.push((case, setting, value, run));
-        };
-        let name = |tolerance: f64, residual: f64| format!("{tolerance:e}, residual {residual:e}");
-        put(
-            REFERENCE,
-            name(FINEST_TOLERANCE, FLOW_RESIDUAL),
-            FINEST_TOLERANCE,
-            Some(FLOW_RESIDUAL),
-        );
-        put("flow", "off".to_owned(), FLOW_TOLERANCE, None);
-        for (tolerance, residual) in [
-            (FLOW_TOLERANCE, 1e-3),
-            (FLOW_TOLERANCE, 1e-2),
-            (FLOW_TOLERANCE, 0.1),
-            (1e-3, 1e-2),
-            (1e-4, 1e-2),
-            (1e-5, 1e-2),
-        ] {
             put(
-                "flow solver",
-                name(tolerance, residual),
-                tolerance,
-                Some(residual),
+                "resolution",
+                name(spacing, tolerance),
+                run(q, spacing, tolerance),
             );
         }
     }
-    all.into_iter().map(trial).collect()
+    for (boundary, free) in [
+        (Boundary::NodeMask, FreeSurface::CutCell),
+        (Boundary::CutLink, FreeSurface::Staircase),
+        (Boundary::NodeMask, FreeSurface::Staircase),
+    ] {
+        for spacing in [MIDDLE_SPACING, 1.0] {
+            let run = Run {
+                boundary,
+                free,
+                ..run(q, spacing, TOLERANCES[1])
+            };
+            let value = format!("{}, {}, h = {spacing}", boundary.name(), free.name());
+            put("boundary", value, run);
+        }
+    }
+    all
 }
 
-fn trial((case, setting, value, run): (String, &'static str, String, Run)) -> Trial {
+/// Resolutions of a ring that buckles.
+fn buckled(q: i32) -> Vec<Named> {
+    let mut all = Vec::new();
+    let mut put = |setting, spacing, tolerance| {
+        let name = resolution(spacing, tolerance);
+        all.push((
+            format!("q = {q}"),
+            setting,
+            name,
+            run(q, spacing, tolerance),
+        ));
+    };
+    put(REFERENCE, REFERENCE_SPACING, REFERENCE_TOLERANCE);
+    for spacing in SPACINGS {
+        put("buckled ring", spacing, TOLERANCES[1]);
+    }
+    all
+}
+
+/// The error in time alone, on one grid.
+fn times(q: i32) -> Vec<Named> {
+    let mut all = Vec::new();
+    let mut put = |setting, value: String, run| {
+        all.push((
+            format!("q = {q}, h = {MIDDLE_SPACING}"),
+            setting,
+            value,
+            run,
+        ));
+    };
+    let name = |tolerance: f64| format!("{tolerance:e}");
+    let at = |tolerance| run(q, MIDDLE_SPACING, tolerance);
+    put(REFERENCE, name(FINEST_TOLERANCE), at(FINEST_TOLERANCE));
+    for tolerance in TOLERANCES {
+        put("tolerance", name(tolerance), at(tolerance));
+    }
+    let mut single = at(TOLERANCES[2]);
+    single.accuracy.precision = Precision::Single;
+    put("storage", Precision::Single.name().to_owned(), single);
+    put(
+        "storage",
+        Precision::Double.name().to_owned(),
+        at(TOLERANCES[2]),
+    );
+    all
+}
+
+/// Flow, without it and with residuals on the boundary.
+fn flows(q: i32) -> Vec<Named> {
+    let mut all = Vec::new();
+    let mut put = |setting, value: String, tolerance: f64, residual: Option<f64>| {
+        let mut run = run(q, MIDDLE_SPACING, tolerance);
+        run.flow = residual.map(|boundary_residual| FlowParameters {
+            boundary_residual,
+            ..FlowParameters::default()
+        });
+        let case = format!("q = {q}, h = {MIDDLE_SPACING}, flow");
+        all.push((case, setting, value, run));
+    };
+    let name = |tolerance: f64, residual: f64| format!("{tolerance:e}, residual {residual:e}");
+    put(
+        REFERENCE,
+        name(FINEST_TOLERANCE, FLOW_RESIDUAL),
+        FINEST_TOLERANCE,
+        Some(FLOW_RESIDUAL),
+    );
+    put("flow", "off".to_owned(), FLOW_TOLERANCE, None);
+    for (tolerance, residual) in [
+        (FLOW_TOLERANCE, 1e-3),
+        (FLOW_TOLERANCE, 1e-2),
+        (FLOW_TOLERANCE, 0.1),
+        (1e-3, 1e-2),
+        (1e-4, 1e-2),
+        (1e-5, 1e-2),
+    ] {
+        put(
+            "flow solver",
+            name(tolerance, residual),
+            tolerance,
+            Some(residual),
+        );
+    }
+    all
+}
+
+fn trial((case, setting, value, run): Named) -> Trial {
     Trial {
         case,
         setting,

@@ -3,7 +3,7 @@
 use maud::{Markup, PreEscaped, html};
 use std::path::{Path, PathBuf};
 
-use super::DrawnSweep;
+use super::drawn::DrawnSweep;
 use crate::gallery::document;
 use crate::plot::text::{escape, significant};
 

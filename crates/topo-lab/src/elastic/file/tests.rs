@@ -205,11 +205,24 @@ fn a_scene_names_its_folder_and_its_knots() {
     assert!(ElasticScene::parse(KNOT, Path::new("figures.toml")).is_err());
 }
 
-/// Each scene with the words of its message: file, line, key, value, remedy.
+/// Scenes of the knot with these lines are refused with these words: file, line, key, value, remedy.
+fn assert_refused(scenes: &[(&str, [&str; 2])]) {
+    for (more, words) in scenes {
+        let text = format!("{KNOT}{more}\n");
+        let told = parse(&text).expect_err(more).to_string();
+        assert!(told.contains("scene.toml"), "{more:?} gives {told:?}");
+        for word in words {
+            assert!(
+                told.contains(word),
+                "{more:?} gives {told:?} without {word:?}"
+            );
+        }
+    }
+}
+
 #[test]
-fn nothing_asked_for_is_ignored_and_nothing_absurd_is_begun() {
-    for (more, words) in [
-        // twice
+fn what_is_there_twice_is_refused() {
+    assert_refused(&[
         (
             "twist = [0.0, 1.0, -0.0]",
             ["line 3: rod.twist = 0 is", "there twice"],
@@ -234,7 +247,12 @@ fn nothing_asked_for_is_ignored_and_nothing_absurd_is_begun() {
             "[discharge]\ncuts = [0.5, 0.5]",
             ["cuts", "0.5 is there twice"],
         ),
-        // no number, list or range
+    ]);
+}
+
+#[test]
+fn what_is_no_number_list_or_range_is_refused() {
+    assert_refused(&[
         (
             "twist = { from = 1, to = 2, n = 3, by = 1 }",
             ["line 3: rod.twist = { from", "{ from = 1, to = 2, n = 3 }"],
@@ -268,7 +286,12 @@ fn nothing_asked_for_is_ignored_and_nothing_absurd_is_begun() {
             "slenderness = [50,\n 40]\nreading = \"soft\"",
             ["line 5", "`soft`"],
         ),
-        // out of range, also as one of several
+    ]);
+}
+
+#[test]
+fn values_out_of_range_are_refused() {
+    assert_refused(&[
         (
             "slenderness = [50, -1]",
             ["line 3: rod.slenderness = -1", "above zero"],
@@ -318,7 +341,12 @@ fn nothing_asked_for_is_ignored_and_nothing_absurd_is_begun() {
             "[discharge.ends]\nmotions = [{ velocity = [1, 0, 0] }, {}]",
             ["line 3: discharge.ends =", "pin or clamp"],
         ),
-        // changes nothing
+    ]);
+}
+
+#[test]
+fn what_changes_nothing_is_refused() {
+    assert_refused(&[
         (
             "reading = \"own-length\"\nslenderness = 50",
             ["line 4: rod.slenderness = 50", "own-length"],
@@ -347,7 +375,12 @@ fn nothing_asked_for_is_ignored_and_nothing_absurd_is_begun() {
             "[accuracy]\nintegrator = \"rkc2\"\nreuse = 2",
             ["line 5: accuracy.reuse = 2", "explicit"],
         ),
-        // absurd
+    ]);
+}
+
+#[test]
+fn nothing_absurd_is_begun() {
+    assert_refused(&[
         (
             "[discharge]\nclosures = 1000000000000",
             [
@@ -370,17 +403,7 @@ fn nothing_asked_for_is_ignored_and_nothing_absurd_is_begun() {
             "slenderness = { from = 0, to = 1, n = 1000000000000 }",
             ["line 3: rod.slenderness.n = 1000000000000", "1 to 100000"],
         ),
-    ] {
-        let text = format!("{KNOT}{more}\n");
-        let told = parse(&text).expect_err(more).to_string();
-        assert!(told.contains("scene.toml"), "{more:?} gives {told:?}");
-        for word in words {
-            assert!(
-                told.contains(word),
-                "{more:?} gives {told:?} without {word:?}"
-            );
-        }
-    }
+    ]);
 }
 
 #[test]

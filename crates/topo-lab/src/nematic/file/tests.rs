@@ -173,11 +173,28 @@ fn a_cell_without_a_particle_has_no_winding() {
     assert_eq!(parse(&scene.text()).unwrap(), scene);
 }
 
-/// Each scene with the words of its message: file, line, key, value, remedy.
+/// Scenes of the colloid with these lines are refused with these words: file, line, key, value, remedy.
+fn assert_refused(scenes: &[(&str, [&str; 2])]) {
+    for (more, words) in scenes {
+        let text = format!("{COLLOID}{more}\n");
+        let told = parse(&text).expect_err(more).to_string();
+        assert!(told.contains("scene.toml"), "{more:?} gives {told:?}");
+        assert_words(&text, &told, words);
+    }
+}
+
+fn assert_words(text: &str, told: &str, words: &[&str]) {
+    for word in words {
+        assert!(
+            told.contains(word),
+            "{text:?} gives {told:?} without {word:?}"
+        );
+    }
+}
+
 #[test]
-fn nothing_asked_for_is_ignored_and_nothing_absurd_is_begun() {
-    for (more, words) in [
-        // flow of what is not there
+fn flow_of_what_is_not_there_is_refused() {
+    assert_refused(&[
         (
             "q = 2\n[flow]\nq = 5",
             ["line 5: flow.q = 5", "nematic.q has no such winding"],
@@ -190,7 +207,12 @@ fn nothing_asked_for_is_ignored_and_nothing_absurd_is_begun() {
             "q = [2, 3]\n[flow]\nq = []",
             ["line 5: flow.q = []", "leave the key out"],
         ),
-        // twice
+    ]);
+}
+
+#[test]
+fn what_is_there_twice_is_refused() {
+    assert_refused(&[
         (
             "q = [1, 2, 1.0]",
             ["line 3: nematic.q = 1 is", "there twice"],
@@ -211,7 +233,12 @@ fn nothing_asked_for_is_ignored_and_nothing_absurd_is_begun() {
             "[charge]\nseeds = [0.0, -0.0]",
             ["line 4: charge.seeds = 0 is", "there twice"],
         ),
-        // no particle
+    ]);
+}
+
+#[test]
+fn what_needs_a_particle_is_refused_without_one() {
+    assert_refused(&[
         (
             "particle = false",
             ["line 3: nematic.particle = false", "to = \"keep\""],
@@ -228,7 +255,12 @@ fn nothing_asked_for_is_ignored_and_nothing_absurd_is_begun() {
             "particle = false\nanchoring = \"free\"\n[switch]\nto = \"keep\"",
             ["line 4: nematic.anchoring", "no particle"],
         ),
-        // values of the run, before the charge
+    ]);
+}
+
+#[test]
+fn settings_of_a_run_out_of_range_are_refused_before_the_charge() {
+    assert_refused(&[
         (
             "[discharge]\nuntil_released = 1.5",
             ["line 4: discharge.until_released = 1.5", "<= 0.999"],
@@ -276,6 +308,12 @@ fn nothing_asked_for_is_ignored_and_nothing_absurd_is_begun() {
             "[charge]\nmax_steps = 0",
             ["line 4: charge.max_steps = 0", "1 <="],
         ),
+    ]);
+}
+
+#[test]
+fn materials_flows_and_grids_out_of_range_are_refused() {
+    assert_refused(&[
         (
             "[material]\nelastic_constant = -1",
             ["line 4: material.elastic_constant = -1", "above zero"],
@@ -320,7 +358,12 @@ fn nothing_asked_for_is_ignored_and_nothing_absurd_is_begun() {
             "periodic = true\nsides = { walled = {} }",
             ["line 3: nematic.periodic = true", "walled sides"],
         ),
-        // changes nothing
+    ]);
+}
+
+#[test]
+fn what_changes_nothing_is_refused() {
+    assert_refused(&[
         (
             "cells = [60, 60, 50]\ncell = [6, 6, 5]",
             ["line 4: nematic.cell = [6, 6, 5]", "keep one"],
@@ -357,7 +400,12 @@ fn nothing_asked_for_is_ignored_and_nothing_absurd_is_begun() {
             "[discharge.flow]\n",
             ["line 3: discharge.flow = given", "[flow]"],
         ),
-        // absurd
+    ]);
+}
+
+#[test]
+fn nothing_absurd_is_begun() {
+    assert_refused(&[
         (
             "q = { from = 1, to = 100, n = 1000000000000 }",
             ["line 3: nematic.q.n = 1000000000000", "1 to 100000"],
@@ -385,17 +433,11 @@ fn nothing_asked_for_is_ignored_and_nothing_absurd_is_begun() {
                 "nematic.q (1000), nematic.anchoring.weak (1000)",
             ],
         ),
-    ] {
-        let text = format!("{COLLOID}{more}\n");
-        let told = parse(&text).expect_err(more).to_string();
-        assert!(told.contains("scene.toml"), "{more:?} gives {told:?}");
-        for word in words {
-            assert!(
-                told.contains(word),
-                "{more:?} gives {told:?} without {word:?}"
-            );
-        }
-    }
+    ]);
+}
+
+#[test]
+fn keys_above_and_across_tables_are_looked_at() {
     for (text, words) in [
         (
             "knots = \"mine\"\n[nematic]\nq = 1",
@@ -415,11 +457,6 @@ fn nothing_asked_for_is_ignored_and_nothing_absurd_is_begun() {
         ),
     ] {
         let told = parse(text).expect_err(text).to_string();
-        for word in words {
-            assert!(
-                told.contains(word),
-                "{text:?} gives {told:?} without {word:?}"
-            );
-        }
+        assert_words(text, &told, &words);
     }
 }
