@@ -25,7 +25,7 @@ pub trait Sweep {
     /// What of it is to be done, stage after stage; nothing where all is finished.
     ///
     /// # Errors
-    /// As [`run`](Self::run).
+    /// As [`sweep`](Self::sweep).
     fn stages(&self, settings: &SweepSettings) -> Result<Vec<Stage>, LabError>;
 
     /// Runs all its cases; what an earlier run finished with the same settings is kept.
