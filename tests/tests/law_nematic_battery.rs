@@ -1,5 +1,7 @@
 //! Laws of the nematic battery: symmetry, buckling, continuity of the switch, books, resume, threads, precision, absent terms.
 
+use std::path::Path;
+
 use topo_core::Interrupt;
 use topo_nematic::{
     Anchoring, Boundary, ChargeSettings, ChargeStop, ChargedNematic, Discharge, DischargeSettings,
@@ -131,10 +133,19 @@ fn law_threads_and_resumed_runs_give_the_same_bits() {
         assert_eq!(moved.state, shared_moved.state, "{n_threads}");
         assert_eq!(moved.record.curve, shared_moved.record.curve, "{n_threads}");
     }
-
-    // The same run, stopped after some steps and resumed from its checkpoint.
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("run.ckpt");
+    assert_discharge_resumes(&one, &settings, &whole, &path);
+    assert_charge_resumes(&one, &path);
+}
+
+/// The same run, stopped after some steps and resumed from its checkpoint.
+fn assert_discharge_resumes(
+    one: &ChargedNematic,
+    settings: &DischargeSettings,
+    whole: &Discharge,
+    path: &Path,
+) {
     let switched = one.switch(&SwitchSettings::default()).unwrap();
     let interrupt = Interrupt::new();
     let mut stop_early = |p: &Progress| {
@@ -144,17 +155,18 @@ fn law_threads_and_resumed_runs_give_the_same_bits() {
     };
     let mut hooks = RunHooks::new(&interrupt)
         .with_progress(&mut stop_early)
-        .with_checkpoint(&path, 1e6);
-    let part = switched.discharge(&settings, &mut hooks).unwrap();
+        .with_checkpoint(path, 1e6);
+    let part = switched.discharge(settings, &mut hooks).unwrap();
     assert_eq!(part.record.report.n_steps, 12);
     assert!(path.exists());
-    let mut hooks = RunHooks::new(&Interrupt::new()).with_checkpoint(&path, 1e6);
-    let rest = switched.discharge(&settings, &mut hooks).unwrap();
+    let mut hooks = RunHooks::new(&Interrupt::new()).with_checkpoint(path, 1e6);
+    let rest = switched.discharge(settings, &mut hooks).unwrap();
     assert_eq!(rest.state, whole.state);
     assert_eq!(rest.record.curve, whole.record.curve);
     assert!(!path.exists(), "a finished run leaves no checkpoint");
+}
 
-    // And a charge.
+fn assert_charge_resumes(one: &ChargedNematic, path: &Path) {
     let battery = one.battery();
     let interrupt = Interrupt::new();
     let mut stop_early = |p: &Progress| {
@@ -164,12 +176,12 @@ fn law_threads_and_resumed_runs_give_the_same_bits() {
     };
     let mut hooks = RunHooks::new(&interrupt)
         .with_progress(&mut stop_early)
-        .with_checkpoint(&path, 1e6);
+        .with_checkpoint(path, 1e6);
     let part = battery
         .charge(&ChargeSettings::default(), &mut hooks)
         .unwrap();
     assert_eq!(part.report().stop, ChargeStop::Interrupted);
-    let mut hooks = RunHooks::new(&Interrupt::new()).with_checkpoint(&path, 1e6);
+    let mut hooks = RunHooks::new(&Interrupt::new()).with_checkpoint(path, 1e6);
     let rest = battery
         .charge(&ChargeSettings::default(), &mut hooks)
         .unwrap();
@@ -177,8 +189,8 @@ fn law_threads_and_resumed_runs_give_the_same_bits() {
     assert_eq!(rest.report().n_steps, one.report().n_steps);
 
     // A checkpoint of another case is refused.
-    std::fs::write(&path, b"noise").unwrap();
-    let mut hooks = RunHooks::new(&Interrupt::new()).with_checkpoint(&path, 1e6);
+    std::fs::write(path, b"noise").unwrap();
+    let mut hooks = RunHooks::new(&Interrupt::new()).with_checkpoint(path, 1e6);
     assert!(
         battery
             .charge(&ChargeSettings::default(), &mut hooks)

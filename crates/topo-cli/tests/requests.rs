@@ -22,9 +22,18 @@ fn colloid(keys: &str, tables: &str) -> String {
     )
 }
 
-/// Scenes by name, with their number of rows.
-fn scenes() -> Vec<(&'static str, String, usize)> {
-    let both = "[rod.contact]\n[rod.friction]";
+/// A scene by name, with its number of rows.
+type Named = (&'static str, String, usize);
+
+fn scenes() -> Vec<Named> {
+    [rod_sweeps(), single_rods(), colloids()].concat()
+}
+
+const CONTACT_AND_FRICTION: &str = "[rod.contact]\n[rod.friction]";
+
+/// Rods with several values of a setting.
+fn rod_sweeps() -> Vec<Named> {
+    let both = CONTACT_AND_FRICTION;
     vec![
         (
             "close-twists",
@@ -76,6 +85,13 @@ fn scenes() -> Vec<(&'static str, String, usize)> {
             ),
             4,
         ),
+    ]
+}
+
+/// Rods by their material, ends, cuts and seeds.
+fn single_rods() -> Vec<Named> {
+    let both = CONTACT_AND_FRICTION;
+    vec![
         (
             "material",
             rod(
@@ -121,6 +137,11 @@ fn scenes() -> Vec<(&'static str, String, usize)> {
             ),
             1,
         ),
+    ]
+}
+
+fn colloids() -> Vec<Named> {
+    vec![
         (
             "charges",
             colloid("radius = 5\nspacing = 1.25\nq = [1, 2]", "[flow]\nq = 2"),

@@ -8,9 +8,9 @@ use std::time::Instant;
 
 use topo_core::Interrupt;
 use topo_nematic::{
-    ChargeSettings, DischargeSettings, FlowParameters, FreeSurface, NematicAccuracy,
-    NematicBattery, NematicParameters, Progress, RunHooks, SurfacePattern, SwitchSettings,
-    SwitchTarget,
+    ChargeSettings, ChargedNematic, Discharge, DischargeSettings, FlowParameters, FreeSurface,
+    NematicAccuracy, NematicBattery, NematicError, NematicParameters, Progress, RunHooks,
+    SurfacePattern, SwitchSettings, SwitchTarget,
 };
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -35,32 +35,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         println!("warning: {warning}");
     }
     println!("cells {:?}", battery.grid().cells());
-    let interrupt = Interrupt::new();
-    let settings = ChargeSettings {
-        seeds: vec![seed],
-        ..Default::default()
-    };
-    let clock = Instant::now();
-    let mut show = |p: &Progress| {
-        if std::env::var_os("TOPO_VERBOSE").is_some() {
-            println!("  step {:5}  rms H {:.2e}", p.step, p.rms_field);
-        }
-    };
-    let mut hooks = RunHooks::new(&interrupt).with_progress(&mut show);
-    let charged = battery.charge(&settings, &mut hooks)?;
-    let report = charged.report();
-    println!(
-        "charged:    F = {:.2} (elastic {:.2}, bulk {:.2}), tilt {:.5} at {:.0} deg, {} steps, rms H {:.1e}, {}, {:.2} s",
-        report.energy.total(),
-        report.energy.elastic,
-        report.energy.bulk,
-        report.order.magnitude(),
-        report.order.azimuth().to_degrees(),
-        report.n_steps,
-        report.rms_field,
-        report.stop,
-        clock.elapsed().as_secs_f64()
-    );
+    let charged = charge_from(&battery, seed)?;
     if let Some(ring) = charged.ring(0.35) {
         println!(
             "ring:       radius {:.3} R, height mode {} of amplitude {:.3} xi_N",
@@ -87,7 +62,45 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         flow: flow.then(FlowParameters::default),
         ..Default::default()
     };
-    let run = switched.discharge(&settings, &mut RunHooks::new(&interrupt))?;
+    let run = switched.discharge(&settings, &mut RunHooks::new(&Interrupt::new()))?;
+    print_run(&run, clock);
+    print_times(&run, battery.diffusion_time());
+    Ok(())
+}
+
+/// Charges from the uniform field tilted by `seed` and prints how it went.
+fn charge_from(battery: &NematicBattery, seed: f64) -> Result<ChargedNematic, NematicError> {
+    let interrupt = Interrupt::new();
+    let settings = ChargeSettings {
+        seeds: vec![seed],
+        ..Default::default()
+    };
+    let clock = Instant::now();
+    let mut show = |p: &Progress| {
+        if std::env::var_os("TOPO_VERBOSE").is_some() {
+            println!("  step {:5}  rms H {:.2e}", p.step, p.rms_field);
+        }
+    };
+    let mut hooks = RunHooks::new(&interrupt).with_progress(&mut show);
+    let charged = battery.charge(&settings, &mut hooks)?;
+    let report = charged.report();
+    println!(
+        "charged:    F = {:.2} (elastic {:.2}, bulk {:.2}), tilt {:.5} at {:.0} deg, {} steps, rms H {:.1e}, {}, {:.2} s",
+        report.energy.total(),
+        report.energy.elastic,
+        report.energy.bulk,
+        report.order.magnitude(),
+        report.order.azimuth().to_degrees(),
+        report.n_steps,
+        report.rms_field,
+        report.stop,
+        clock.elapsed().as_secs_f64()
+    );
+    Ok(charged)
+}
+
+/// How the discharge went.
+fn print_run(run: &Discharge, clock: Instant) {
     let report = &run.record.report;
     println!(
         "discharged: {} steps, {} refused, {} evaluations, ledger residual {:.1e}, {}, {:.2} s",
@@ -105,7 +118,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         );
     }
     println!("bytes:      {:?}", report.bytes);
-    let (curve, unit) = (&run.record.curve, battery.diffusion_time());
+}
+
+/// Times at which shares of the energy are released, in the diffusion time.
+fn print_times(run: &Discharge, unit: f64) {
+    let curve = &run.record.curve;
     for share in [0.5, 0.9, 0.99, 0.999] {
         let left = (1.0 - share) * run.start;
         if let Some(i) = (1..curve.len()).find(|i| curve.stored_total(*i) <= left) {
@@ -120,5 +137,4 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             );
         }
     }
-    Ok(())
 }

@@ -4,10 +4,13 @@
 //! cargo run --release -p topo-rod --example trefoil_discharge -- [twist] [edges] [tolerance]
 //! ```
 
+use std::time::Instant;
+
 use nalgebra::Vector3;
 use topo_core::{Interrupt, Polyline};
 use topo_rod::{
-    Accuracy, ChargeSettings, CutSite, DischargeSettings, Guards, RodBattery, RodParameters,
+    Accuracy, ChargeSettings, ChargedRod, CutSite, Discharge, DischargeSettings, Guards,
+    RodBattery, RodParameters,
 };
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -18,18 +21,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         argument(2, 100.0)? as usize,
         argument(3, 2e-3)?,
     );
-    let trefoil = (0..400)
-        .map(|k| {
-            let u = std::f64::consts::TAU * k as f64 / 400.0;
-            let r = 2.0 + (3.0 * u).cos();
-            Vector3::new(
-                r * (2.0 * u).cos(),
-                r * (2.0 * u).sin(),
-                -1.2 * (3.0 * u).sin(),
-            )
-        })
-        .collect();
-    let curve = Polyline::new(trefoil, true)?;
+    let curve = trefoil()?;
     println!("writhe of the start curve {:.3}", curve.writhe());
     let parameters = RodParameters {
         twist: Some(twist),
@@ -41,8 +33,32 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         ..Default::default()
     };
     let battery = RodBattery::new(&parameters, &accuracy, Guards::default(), &curve)?;
-    let clock = std::time::Instant::now();
+    let clock = Instant::now();
     let charged = battery.charge(&ChargeSettings::default(), &Interrupt::new())?;
+    print_charge(&charged, clock)?;
+    let clock = Instant::now();
+    let run = charged
+        .cut(CutSite::MaximumEnergyDensity)?
+        .discharge(&DischargeSettings::default(), &Interrupt::new())?;
+    print_discharge(&run, clock);
+    Ok(())
+}
+
+/// A trefoil, not tight.
+fn trefoil() -> Result<Polyline, topo_core::CurveError> {
+    let at = |k: usize| {
+        let u = std::f64::consts::TAU * k as f64 / 400.0;
+        let r = 2.0 + (3.0 * u).cos();
+        Vector3::new(
+            r * (2.0 * u).cos(),
+            r * (2.0 * u).sin(),
+            -1.2 * (3.0 * u).sin(),
+        )
+    };
+    Polyline::new((0..400).map(at).collect(), true)
+}
+
+fn print_charge(charged: &ChargedRod, clock: Instant) -> Result<(), &'static str> {
     let report = &charged.record().report;
     let last = charged.record().samples.last().ok_or("no sample")?;
     println!(
@@ -60,10 +76,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     );
     println!("  {:?}", report.work);
     println!("  {:?}", report.rejections);
-    let clock = std::time::Instant::now();
-    let run = charged
-        .cut(CutSite::MaximumEnergyDensity)?
-        .discharge(&DischargeSettings::default(), &Interrupt::new())?;
+    Ok(())
+}
+
+fn print_discharge(run: &Discharge, clock: Instant) {
     let report = &run.record.report;
     println!(
         "discharged: {} steps, {} refused, ledger residual {:.1e}, least distance {:?} d_c, {}, {:.2} s",
@@ -94,5 +110,4 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             );
         }
     }
-    Ok(())
 }

@@ -73,6 +73,75 @@ struct Evaluation {
     couplings: Vec<(u32, u32, f64)>,
 }
 
+/// What the parameters name, and how far strands act on each other.
+#[derive(Clone, Copy)]
+struct Named {
+    twist: Option<Twist>,
+    contact: Option<ContactEnergy>,
+    friction: Option<Friction>,
+    reach: f64,
+}
+
+impl Named {
+    fn of(parameters: &RodParameters, tube: &Tube) -> Self {
+        let twist = parameters.twist.map(|_| Twist {
+            ratio: parameters.twist_ratio,
+        });
+        let contact = parameters.contact.map(|contact| ContactEnergy {
+            stiffness: contact.stiffness,
+            diameter: tube.contact_diameter,
+        });
+        let friction = parameters
+            .friction
+            .filter(|f| f.ratio > 0.0)
+            .map(|f| Friction {
+                ratio: f.ratio,
+                range: tube.friction_range,
+            });
+        let mut reach = contact.map_or(0.0, |contact| contact.diameter);
+        if let Some(friction) = friction {
+            reach = reach.max(friction.range);
+        }
+        Self {
+            twist,
+            contact,
+            friction,
+            reach,
+        }
+    }
+
+    /// Terms of the energy, in the order of the ledger.
+    fn terms(&self, stretch_ratio: f64) -> Vec<Box<dyn EnergyTerm>> {
+        let stretch = Stretch {
+            ratio: stretch_ratio,
+        };
+        let mut terms: Vec<Box<dyn EnergyTerm>> = vec![Box::new(Bend), Box::new(stretch)];
+        if let Some(twist) = self.twist {
+            terms.push(Box::new(twist));
+        }
+        if let Some(contact) = self.contact {
+            terms.push(Box::new(contact));
+        }
+        terms
+    }
+
+    fn pairs(&self, skin: f64, is_closed: bool) -> ContactPairs {
+        let mut pairs = ContactPairs::new(self.reach, skin);
+        if self.contact.is_some() {
+            pairs = pairs.with_core();
+        }
+        pairs.set_cyclic(is_closed);
+        pairs
+    }
+}
+
+/// `n` flags, those of `places` set.
+fn marked(n: usize, places: impl Iterator<Item = usize>) -> Vec<bool> {
+    let mut flags = vec![false; n];
+    places.for_each(|place| flags[place] = true);
+    flags
+}
+
 impl RodModel {
     /// A model for `state`, with just what `parameters` name.
     ///
@@ -88,9 +157,13 @@ impl RodModel {
     ) -> Result<Self, RodError> {
         let parameters = parameters.clone().checked()?;
         let accuracy = accuracy.checked()?;
-        let twist = parameters.twist.map(|_| Twist {
-            ratio: parameters.twist_ratio,
-        });
+        let named = Named::of(&parameters, tube);
+        let Named {
+            twist,
+            contact,
+            friction,
+            reach,
+        } = named;
         let ends = ends.checked(twist.is_some())?;
         if state.is_closed() && !ends.is_free() {
             return Err(RodError::WrongTopology {
@@ -98,39 +171,8 @@ impl RodModel {
                 needed: "an open",
             });
         }
-        let mut terms: Vec<Box<dyn EnergyTerm>> = vec![
-            Box::new(Bend),
-            Box::new(Stretch {
-                ratio: parameters.stretch_ratio,
-            }),
-        ];
-        if let Some(twist) = twist {
-            terms.push(Box::new(twist));
-        }
-        let mut reach = 0.0;
-        let contact = parameters.contact.map(|contact| ContactEnergy {
-            stiffness: contact.stiffness,
-            diameter: tube.contact_diameter,
-        });
-        if let Some(contact) = contact {
-            terms.push(Box::new(contact));
-            reach = tube.contact_diameter;
-        }
-        let friction = parameters
-            .friction
-            .filter(|f| f.ratio > 0.0)
-            .map(|f| Friction {
-                ratio: f.ratio,
-                range: tube.friction_range,
-            });
-        if let Some(friction) = friction {
-            reach = reach.max(friction.range);
-        }
-        let mut pairs = ContactPairs::new(reach, accuracy.skin);
-        if contact.is_some() {
-            pairs = pairs.with_core();
-        }
-        pairs.set_cyclic(state.is_closed());
+        let terms = named.terms(parameters.stretch_ratio);
+        let pairs = named.pairs(accuracy.skin, state.is_closed());
         let (n_vertices, n_edges) = (state.n_vertices(), state.n_edges());
         let held_vertices = ends.held_vertices(state);
         let held_edges = if twist.is_some() {
@@ -138,10 +180,8 @@ impl RodModel {
         } else {
             Vec::new()
         };
-        let mut fixed = vec![false; n_vertices];
-        held_vertices.iter().for_each(|h| fixed[h.0] = true);
-        let mut fixed_edges = vec![false; n_edges];
-        held_edges.iter().for_each(|h| fixed_edges[h.0] = true);
+        let fixed = marked(n_vertices, held_vertices.iter().map(|h| h.0));
+        let fixed_edges = marked(n_edges, held_edges.iter().map(|h| h.0));
         let names: Vec<&'static str> = terms.iter().map(|t| t.name()).collect();
         Ok(Self {
             twist,

@@ -52,11 +52,7 @@ impl NewtonMatrix {
         couplings: &[(u32, u32, f64)],
     ) -> Result<(), SparseError> {
         let n = state.n_vertices();
-        let further = || stiffness.further.iter().map(|p| (p.0, p.1));
-        if self.solver.is_none() || !self.pairs.serve(n, pairs.active(), further()) {
-            self.pairs.renew(state, pairs, further());
-            self.build_pattern(state)?;
-        }
+        self.keep_pattern(state, pairs, stiffness)?;
         self.couplings.clear();
         self.couplings.extend_from_slice(couplings);
         self.chain = state.chain();
@@ -107,7 +103,8 @@ impl NewtonMatrix {
             let (i, j) = (pair.i as usize, pair.j as usize);
             add(3 * n + place, (i, j), block * s, false);
         }
-        for (place, &(i, j, block)) in self.pairs.places(further()).zip(&stiffness.further) {
+        let further = stiffness.further.iter().map(|p| (p.0, p.1));
+        for (place, &(i, j, block)) in self.pairs.places(further).zip(&stiffness.further) {
             add(3 * n + place, (i as usize, j as usize), block * s, false);
         }
         let rubbing = couplings.iter().map(|c| (c.0, c.1));
@@ -117,19 +114,25 @@ impl NewtonMatrix {
             add(j, (j, j), identity(c), true);
             add(3 * n + place, (i, j), identity(-c), false);
         }
-        for i in 0..n {
-            let grounded = if self.floating && i == 0 {
-                viscous
-            } else {
-                0.0
-            };
-            let held = if self.fixed[i] { 1.0 } else { grounded };
-            for k in [0, 4, 8] {
-                values[self.blocks[i][k]] += held;
-            }
-        }
+        hold(values, &self.blocks, &self.fixed, self.floating, viscous);
         self.n_factorisations += 1;
         solver.factor()
+    }
+
+    /// Makes a new pattern where the one at hand does not serve.
+    fn keep_pattern(
+        &mut self,
+        state: &RodState,
+        pairs: &ContactPairs,
+        stiffness: &Stiffness,
+    ) -> Result<(), SparseError> {
+        let further = || stiffness.further.iter().map(|p| (p.0, p.1));
+        let n = state.n_vertices();
+        if self.solver.is_none() || !self.pairs.serve(n, pairs.active(), further()) {
+            self.pairs.renew(state, pairs, further());
+            self.build_pattern(state)?;
+        }
+        Ok(())
     }
 
     fn build_pattern(&mut self, state: &RodState) -> Result<(), SparseError> {
@@ -210,6 +213,17 @@ impl NewtonMatrix {
         }
         if self.floating {
             remove_mean(r, n);
+        }
+    }
+}
+
+/// Closes the rows of held vertices by ones, and those of the first vertex of a floating rod by `ground`.
+fn hold(values: &mut [f64], blocks: &[[usize; 9]], fixed: &[bool], floating: bool, ground: f64) {
+    for (i, &is_held) in fixed.iter().enumerate() {
+        let grounded = if floating && i == 0 { ground } else { 0.0 };
+        let held = if is_held { 1.0 } else { grounded };
+        for k in [0, 4, 8] {
+            values[blocks[i][k]] += held;
         }
     }
 }

@@ -11,7 +11,7 @@ use crate::program::program;
 use kuva::prelude::{LinePlot, Plot, ScatterPlot};
 use topo_analysis::quantile;
 use topo_lab::Preset;
-use topo_lab::{CheckRow, REFERENCE, Setting, System, TradeoffRow, points, settings_of};
+use topo_lab::{CheckRow, Point, REFERENCE, Setting, System, TradeoffRow, points, settings_of};
 
 /// Errors that the short table asks for.
 const WISHES: [f64; 8] = [0.2, 0.1, 0.05, 0.03, 0.02, 0.01, 0.005, 0.002];
@@ -36,6 +36,40 @@ const LEGEND: f64 = 340.0;
 /// From one panel to the next, across and down.
 const STEP: [f64; 2] = [276.0, 226.0];
 
+/// Whether a setting is a dot of the picture.
+fn is_drawn(s: &&Setting) -> bool {
+    s.setting != REFERENCE && s.cpu_seconds > 0.0
+}
+
+/// Kinds of settings, each with its own colour.
+struct Families<'a>(Vec<&'a str>);
+
+impl<'a> Families<'a> {
+    fn of(settings: &'a [Setting]) -> Self {
+        let mut families: Vec<&str> = Vec::new();
+        for s in settings.iter().filter(is_drawn) {
+            if !families.contains(&s.setting.as_str()) {
+                families.push(&s.setting);
+            }
+        }
+        Self(families)
+    }
+
+    fn ink(&self, family: &str) -> &'static str {
+        let k = self.0.iter().position(|f| *f == family).unwrap_or(0);
+        [BLUE, VERMILION, GREEN, PURPLE, "#e69f00", INK, "#56b4e9"][k % 7]
+    }
+
+    fn draw_legend(&self, canvas: &mut Canvas, foot: f64) {
+        let mut x = 24.0;
+        for family in &self.0 {
+            canvas.rect([x, foot + 14.0], [8.0, 8.0], self.ink(family));
+            canvas.text(x + 12.0, foot + 21.5, family, Style::default().size(9.0));
+            x += 30.0 + 5.2 * family.len() as f64;
+        }
+    }
+}
+
 /// Error against cost, one panel a quantity; the front is joined by a line.
 pub fn draw(system: System, rows: &[TradeoffRow]) -> Result<Picture, ViewError> {
     let settings = settings_of(rows);
@@ -48,72 +82,17 @@ pub fn draw(system: System, rows: &[TradeoffRow]) -> Result<Picture, ViewError> 
     };
     let foot = STEP[1] * names.len().div_ceil(columns) as f64;
     let mut canvas = Canvas::new((STEP[0] * columns as f64).max(LEGEND), foot + 42.0, 4.0);
-    let drawn = |s: &&Setting| s.setting != REFERENCE && s.cpu_seconds > 0.0;
-    let mut families: Vec<&str> = Vec::new();
-    for s in settings.iter().filter(drawn) {
-        if !families.contains(&s.setting.as_str()) {
-            families.push(&s.setting);
-        }
-    }
-    let ink = |family: &str| {
-        let k = families.iter().position(|f| *f == family).unwrap_or(0);
-        [BLUE, VERMILION, GREEN, PURPLE, "#e69f00", INK, "#56b4e9"][k % 7]
-    };
-    let costs: Vec<f64> = settings
-        .iter()
-        .filter(drawn)
-        .map(|s| s.cpu_seconds)
-        .collect();
-    let range = |values: &[f64]| {
-        let low = values.iter().copied().fold(f64::INFINITY, f64::min);
-        let high = values.iter().copied().fold(0.0, f64::max);
-        (low / 1.4, high * 1.4)
-    };
+    let families = Families::of(&settings);
     for (k, name) in names.iter().enumerate() {
-        let of: Vec<&Setting> = settings
-            .iter()
-            .filter(drawn)
-            .filter(|s| s.quantity == *name)
-            .collect();
-        let error = |s: &Setting| 100.0 * s.high_error.max(LEAST_ERROR);
-        let errors: Vec<f64> = of.iter().map(|s| error(s)).collect();
-        let panel = Panel {
-            at: [
-                54.0 + STEP[0] * (k % columns) as f64,
-                22.0 + STEP[1] * (k / columns) as f64,
-            ],
-            size: PANEL,
-            x: Axis::log("CPU seconds a case", range(&costs)),
-            y: Axis::log(
-                &format!("Error of {}, per cent", label(name)),
-                range(&errors),
-            ),
-        };
-        let mut front: Vec<(f64, f64)> = of
-            .iter()
-            .filter(|s| s.pareto && s.is_whole())
-            .map(|s| (s.cpu_seconds, error(s)))
-            .collect();
-        front.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let line = LinePlot::new().with_data(front);
-        let mut plots = vec![Plot::Line(line.with_color(QUIET).with_stroke_width(1.2))];
-        for s in &of {
-            let dot = ScatterPlot::new()
-                .with_data(vec![(s.cpu_seconds, error(s))])
-                .with_color(ink(&s.setting))
-                .with_size(if s.pareto { 3.4 } else { 2.0 });
-            plots.push(Plot::Scatter(dot));
-        }
-        panel.draw(&mut canvas, plots, &[]);
+        let at = [
+            54.0 + STEP[0] * (k % columns) as f64,
+            22.0 + STEP[1] * (k / columns) as f64,
+        ];
+        draw_quantity(&mut canvas, at, name, &settings, &families);
         let letter = char::from(b'a' + k as u8).to_string();
-        canvas.letter(panel.at[0] - 44.0, panel.at[1] - 8.0, &letter);
+        canvas.letter(at[0] - 44.0, at[1] - 8.0, &letter);
     }
-    let mut x = 24.0;
-    for family in &families {
-        canvas.rect([x, foot + 14.0], [8.0, 8.0], ink(family));
-        canvas.text(x + 12.0, foot + 21.5, family, Style::default().size(9.0));
-        x += 30.0 + 5.2 * family.len() as f64;
-    }
+    families.draw_legend(&mut canvas, foot);
     let note = format!(
         "{}: 90th percentile over cases; large dots and the line: nothing is cheaper and better",
         system.name()
@@ -125,6 +104,58 @@ pub fn draw(system: System, rows: &[TradeoffRow]) -> Result<Picture, ViewError> 
         Style::default().size(8.5).color(QUIET),
     );
     canvas.finish()
+}
+
+/// A panel: error of a quantity against cost, a dot a setting.
+fn draw_quantity(
+    canvas: &mut Canvas,
+    at: [f64; 2],
+    name: &str,
+    settings: &[Setting],
+    families: &Families<'_>,
+) {
+    let costs: Vec<f64> = settings
+        .iter()
+        .filter(is_drawn)
+        .map(|s| s.cpu_seconds)
+        .collect();
+    let range = |values: &[f64]| {
+        let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+        let high = values.iter().copied().fold(0.0, f64::max);
+        (low / 1.4, high * 1.4)
+    };
+    let of: Vec<&Setting> = settings
+        .iter()
+        .filter(is_drawn)
+        .filter(|s| s.quantity == name)
+        .collect();
+    let error = |s: &Setting| 100.0 * s.high_error.max(LEAST_ERROR);
+    let errors: Vec<f64> = of.iter().map(|s| error(s)).collect();
+    let panel = Panel {
+        at,
+        size: PANEL,
+        x: Axis::log("CPU seconds a case", range(&costs)),
+        y: Axis::log(
+            &format!("Error of {}, per cent", label(name)),
+            range(&errors),
+        ),
+    };
+    let mut front: Vec<(f64, f64)> = of
+        .iter()
+        .filter(|s| s.pareto && s.is_whole())
+        .map(|s| (s.cpu_seconds, error(s)))
+        .collect();
+    front.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let line = LinePlot::new().with_data(front);
+    let mut plots = vec![Plot::Line(line.with_color(QUIET).with_stroke_width(1.2))];
+    for s in &of {
+        let dot = ScatterPlot::new()
+            .with_data(vec![(s.cpu_seconds, error(s))])
+            .with_color(families.ink(&s.setting))
+            .with_size(if s.pareto { 3.4 } else { 2.0 });
+        plots.push(Plot::Scatter(dot));
+    }
+    panel.draw(canvas, plots, &[]);
 }
 
 /// Name of a quantity in the markup of labels.
@@ -157,21 +188,29 @@ pub fn report(quality: Preset, tables: &[(System, Vec<TradeoffRow>)]) -> String 
 
 /// The part of the report on one system.
 pub fn section(quality: Preset, system: System, rows: &[TradeoffRow]) -> String {
-    let mut text = String::new();
-    let mut put = |line: String| {
-        // Writing to a string cannot fail.
-        let _ = writeln!(text, "{line}");
-    };
     let settings = settings_of(rows);
     let mut cases: Vec<&str> = rows.iter().map(|r| r.case.as_str()).collect();
     cases.dedup();
     cases.sort_unstable();
     cases.dedup();
-    put(format!("Cases: {}.\n", cases.join("; ")));
-    put("If you can live with an error of ..., use this, it costs ...\n".to_owned());
-    put("| quantity | error asked for | setting | median | 90 % | CPU s a case | MB |".to_owned());
-    put("|---|---|---|---|---|---|---|".to_owned());
-    for name in quantities(&settings) {
+    let mut lines = vec![format!("Cases: {}.\n", cases.join("; "))];
+    put_wishes(&mut lines, &settings);
+    put_settings(&mut lines, &settings);
+    let points = points(system, rows);
+    if quality == Preset::Standard && !points.is_empty() {
+        put_points(&mut lines, system, points);
+    }
+    lines.into_iter().map(|line| line + "\n").collect()
+}
+
+/// The cheapest setting that keeps each error.
+fn put_wishes(lines: &mut Vec<String>, settings: &[Setting]) {
+    lines.extend([
+        "If you can live with an error of ..., use this, it costs ...\n".to_owned(),
+        "| quantity | error asked for | setting | median | 90 % | CPU s a case | MB |".to_owned(),
+        "|---|---|---|---|---|---|---|".to_owned(),
+    ]);
+    for name in quantities(settings) {
         let mut last = "";
         for wish in WISHES {
             let best = settings
@@ -183,7 +222,7 @@ pub fn section(quality: Preset, system: System, rows: &[TradeoffRow]) -> String 
                 continue;
             }
             last = &s.value;
-            put(format!(
+            lines.push(format!(
                 "| {name} | {} | {} {} | {} | {} | {:.2} | {:.1} |",
                 percent(wish),
                 s.setting,
@@ -195,40 +234,33 @@ pub fn section(quality: Preset, system: System, rows: &[TradeoffRow]) -> String 
             ));
         }
     }
-    put("\nEvery setting; a star marks the front.\n".to_owned());
-    let names = quantities(&settings);
-    put(format!(
+}
+
+/// Every setting with its errors, a column for each quantity.
+fn put_settings(lines: &mut Vec<String>, settings: &[Setting]) {
+    lines.push("\nEvery setting; a star marks the front.\n".to_owned());
+    let names = quantities(settings);
+    lines.push(format!(
         "| setting | value | CPU s | MB | {} |",
         names.join(" | ")
     ));
-    put(format!("|---|---|---|---|{}", "---|".repeat(names.len())));
+    lines.push(format!("|---|---|---|---|{}", "---|".repeat(names.len())));
     let mut seen: Vec<(&str, &str)> = Vec::new();
-    for s in &settings {
+    for s in settings {
         let key = (s.setting.as_str(), s.value.as_str());
         if seen.contains(&key) {
             continue;
         }
         seen.push(key);
-        let mut cells = Vec::new();
-        for name in &names {
-            let of = settings
-                .iter()
-                .find(|o| (o.setting.as_str(), o.value.as_str()) == key && o.quantity == *name);
-            cells.push(of.map_or_else(String::new, |o| {
-                let lost = if o.n_failed > 0 {
-                    format!(" ({} of {} without)", o.n_failed, o.n_cases + o.n_failed)
-                } else {
-                    String::new()
-                };
-                let star = if o.pareto { " *" } else { "" };
-                format!(
-                    "{} / {}{lost}{star}",
-                    percent(o.median_error),
-                    percent(o.high_error)
-                )
-            }));
-        }
-        put(format!(
+        let of = |name| {
+            let is_it = |o: &&Setting| (o.setting.as_str(), o.value.as_str()) == key;
+            settings.iter().filter(is_it).find(|o| o.quantity == name)
+        };
+        let cells: Vec<String> = names
+            .iter()
+            .map(|name| of(*name).map_or_else(String::new, errors_of))
+            .collect();
+        lines.push(format!(
             "| {} | {} | {:.2} | {:.1} | {} |",
             s.setting,
             s.value,
@@ -237,27 +269,46 @@ pub fn section(quality: Preset, system: System, rows: &[TradeoffRow]) -> String 
             cells.join(" | ")
         ));
     }
-    put(String::new());
-    let points = points(system, rows);
-    if quality == Preset::Standard && !points.is_empty() {
-        put("What scenes by wish choose from: errors of the last time listed; costs of both runs.\n".to_owned());
-        put("| setting | coarser run | cases | median | 90 % | CPU s a case | MB |".to_owned());
-        put("|---|---|---|---|---|---|---|".to_owned());
-        for p in points {
-            put(format!(
-                "| {} | {} | {} | {} | {} | {:.2} | {:.1} |",
-                system.resolution_name(p.resolution, p.tolerance),
-                system.resolution_name(p.check_resolution, p.check_tolerance),
-                p.n_cases,
-                percent(p.median_error),
-                percent(p.high_error),
-                p.cpu_seconds,
-                p.peak_bytes as f64 / 1e6,
-            ));
-        }
-        put(String::new());
+    lines.push(String::new());
+}
+
+/// Median and 90th percentile of the errors, how many runs gave none, and a star on the front.
+fn errors_of(setting: &Setting) -> String {
+    let lost = if setting.n_failed > 0 {
+        let n = setting.n_cases + setting.n_failed;
+        format!(" ({} of {n} without)", setting.n_failed)
+    } else {
+        String::new()
+    };
+    let star = if setting.pareto { " *" } else { "" };
+    format!(
+        "{} / {}{lost}{star}",
+        percent(setting.median_error),
+        percent(setting.high_error)
+    )
+}
+
+/// What scenes by wish choose from.
+fn put_points(lines: &mut Vec<String>, system: System, points: Vec<Point>) {
+    lines.extend([
+        "What scenes by wish choose from: errors of the last time listed; costs of both runs.\n"
+            .to_owned(),
+        "| setting | coarser run | cases | median | 90 % | CPU s a case | MB |".to_owned(),
+        "|---|---|---|---|---|---|---|".to_owned(),
+    ]);
+    for p in points {
+        lines.push(format!(
+            "| {} | {} | {} | {} | {} | {:.2} | {:.1} |",
+            system.resolution_name(p.resolution, p.tolerance),
+            system.resolution_name(p.check_resolution, p.check_tolerance),
+            p.n_cases,
+            percent(p.median_error),
+            percent(p.high_error),
+            p.cpu_seconds,
+            p.peak_bytes as f64 / 1e6,
+        ));
     }
-    text
+    lines.push(String::new());
 }
 
 /// How well promises and estimates of runs by wish hold on cases that they were not measured on.

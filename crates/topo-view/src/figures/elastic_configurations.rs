@@ -24,6 +24,9 @@ pub(super) const FIGURE: Figure = Figure {
 
 const CELL: [f64; 2] = [40.0, 40.0];
 
+/// Upper left corner of the states.
+const CORNER: [f64; 2] = [34.0, 34.0];
+
 fn draw(context: &Context) -> Result<Drawn, ViewError> {
     let sweep = Sweep::read(context.results)?;
     let (knots, twists) = (sweep.knots(), sweep.twists());
@@ -36,27 +39,12 @@ fn draw(context: &Context) -> Result<Drawn, ViewError> {
     let scale = Scale::viridis_root(high_density(shapes()));
     let unit = (CELL[0].min(CELL[1]) - 1.0) / widest(shapes());
 
-    let (left, top) = (34.0, 34.0);
+    let [left, top] = CORNER;
     // A few twists still leave room for the note at the foot.
     let width = (left + CELL[0] * twists.len() as f64 + 50.0).max(620.0);
     let bottom = top + CELL[1] * knots.len() as f64;
     let mut canvas = Canvas::new(width, bottom + 34.0, 5.0 * context.detail);
-    let middle = left + CELL[0] * twists.len() as f64 / 2.0;
-    canvas.text(
-        middle,
-        13.0,
-        "Twist density θ′*h*",
-        Style::default().middle().size(10.5),
-    );
-    for (i, twist) in twists.iter().enumerate() {
-        let x = left + CELL[0] * (i as f64 + 0.5);
-        canvas.text(
-            x,
-            28.0,
-            &text::signed(*twist),
-            Style::default().middle().size(9.0),
-        );
-    }
+    name_columns(&mut canvas, &twists);
     let images = states
         .par_iter()
         .map(|s| {
@@ -64,7 +52,6 @@ fn draw(context: &Context) -> Result<Drawn, ViewError> {
             s.shape.image(&name, CELL, unit, canvas.zoom(), &scale)
         })
         .collect::<Result<Vec<_>, _>>()?;
-    let mut table = Table::new("knot,twist,s,x,y,z,energy_density");
     for (state, image) in states.iter().zip(&images) {
         let column = twists
             .iter()
@@ -73,20 +60,8 @@ fn draw(context: &Context) -> Result<Drawn, ViewError> {
         let line = knots.iter().position(|k| *k == state.knot).unwrap_or(0);
         let at = [left + CELL[0] * column as f64, top + CELL[1] * line as f64];
         canvas.image(at, CELL, image);
-        let curve = &state.shape.curve;
-        for ((s, p), e) in curve.s.iter().zip(&curve.points).zip(&curve.density) {
-            table.row(&[&state.knot], &[state.twist, *s, p.x, p.y, p.z, *e]);
-        }
     }
-    for (i, knot) in knots.iter().enumerate() {
-        let y = top + CELL[1] * (i as f64 + 0.5) + 4.0;
-        canvas.text(
-            left - 6.0,
-            y,
-            &text::knot_name(knot),
-            Style::default().end().bold().size(11.5),
-        );
-    }
+    name_rows(&mut canvas, &knots);
     let high = scale.range().1;
     let bar = [width - 44.0, top + 0.28 * (bottom - top)];
     let size = [9.0, 0.44 * (bottom - top)];
@@ -100,9 +75,51 @@ fn draw(context: &Context) -> Result<Drawn, ViewError> {
     canvas.footnote(&face(&sweep, context.quality));
     Ok(Drawn {
         picture: canvas.finish()?,
-        csv: table.finish(),
+        csv: table(&states).finish(),
         finding: finding(&sweep, &states),
     })
+}
+
+fn name_columns(canvas: &mut Canvas, twists: &[f64]) {
+    let middle = CORNER[0] + CELL[0] * twists.len() as f64 / 2.0;
+    canvas.text(
+        middle,
+        13.0,
+        "Twist density θ′*h*",
+        Style::default().middle().size(10.5),
+    );
+    for (i, twist) in twists.iter().enumerate() {
+        let x = CORNER[0] + CELL[0] * (i as f64 + 0.5);
+        canvas.text(
+            x,
+            28.0,
+            &text::signed(*twist),
+            Style::default().middle().size(9.0),
+        );
+    }
+}
+
+fn name_rows(canvas: &mut Canvas, knots: &[&str]) {
+    for (i, knot) in knots.iter().enumerate() {
+        let y = CORNER[1] + CELL[1] * (i as f64 + 0.5) + 4.0;
+        canvas.text(
+            CORNER[0] - 6.0,
+            y,
+            &text::knot_name(knot),
+            Style::default().end().bold().size(11.5),
+        );
+    }
+}
+
+fn table(states: &[&State]) -> Table {
+    let mut table = Table::new("knot,twist,s,x,y,z,energy_density");
+    for state in states {
+        let curve = &state.shape.curve;
+        for ((s, p), e) in curve.s.iter().zip(&curve.points).zip(&curve.density) {
+            table.row(&[&state.knot], &[state.twist, *s, p.x, p.y, p.z, *e]);
+        }
+    }
+    table
 }
 
 struct State {

@@ -39,6 +39,12 @@ const SLACK: f64 = 5e-3;
 /// Struts shown per unit of length along a line of contact.
 const STRUTS_PER_UNIT: f64 = 2.0;
 
+/// Points of a knot turned to the reader.
+type View = Vec<Vector3<f64>>;
+
+/// Side of a picture of a knot.
+const PICTURE: [f64; 2] = [CELL[0], CELL[1] - 16.0];
+
 fn draw(context: &Context) -> Result<Drawn, ViewError> {
     let rows: Vec<KnotRow> = read_csv(&context.results.join("knots/table.csv"))?;
     if rows.is_empty() {
@@ -48,57 +54,13 @@ fn draw(context: &Context) -> Result<Drawn, ViewError> {
             reason: "no rows".to_owned(),
         });
     }
-    let views = rows
-        .iter()
-        .map(|r| {
-            let curve = Curve::read(&context.results.join(format!("knots/{}.csv", r.knot)))?;
-            Ok(camera::view(
-                &curve.points,
-                &camera::flattest(&curve.points),
-            ))
-        })
-        .collect::<Result<Vec<_>, ViewError>>()?;
-    let sides = views.iter().map(|v| {
-        let [x0, y0, x1, y1] = camera::extent(v);
-        ((CELL[0] - 4.0) / (x1 - x0 + 2.0)).min((CELL[1] - 18.0) / (y1 - y0 + 2.0))
-    });
-    let unit = sides.fold(20.0, f64::min);
-    let scale = Scale::viridis(0.0, 1.0);
     let n_lines = rows.len().div_ceil(COLUMNS);
     let pictures = CELL[1] * n_lines as f64;
     let n_notes = if context.struts { 2.0 } else { 1.0 };
     let height = 8.0 + pictures + 44.0 + 14.0 * rows.len() as f64 + 14.0 + 12.0 * n_notes;
     let mut canvas = Canvas::new(720.0, height, 4.0 * context.detail);
-    let size = [CELL[0], CELL[1] - 16.0];
-    let zoom = canvas.zoom();
-    let images = views
-        .par_iter()
-        .map(|view| {
-            let [x0, y0, x1, y1] = camera::extent(view);
-            let radius = if context.struts { THIN } else { 1.0 };
-            let tube = Tube::new(view, &curvature(view), true, radius, &scale);
-            let tube = tube.ok_or_else(|| ViewError::Drawing {
-                reason: "a knot is no curve".to_owned(),
-            })?;
-            let rods = if context.struts {
-                rods(view)?
-            } else {
-                Rods::default()
-            };
-            let centre = [(x0 + x1) / 2.0, (y0 + y1) / 2.0];
-            tube_and_rods_png(size, centre, unit, zoom, &tube, &rods)
-        })
-        .collect::<Result<Vec<_>, _>>()?;
-    for (i, (row, image)) in rows.iter().zip(&images).enumerate() {
-        let at = [
-            CELL[0] * (i % COLUMNS) as f64,
-            8.0 + CELL[1] * (i / COLUMNS) as f64,
-        ];
-        canvas.image(at, size, image);
-        let name = text::knot_name(&row.knot);
-        let style = Style::default().middle().bold().size(11.5);
-        canvas.text(at[0] + CELL[0] / 2.0, at[1] + CELL[1] - 4.0, &name, style);
-    }
+    let scale = Scale::viridis(0.0, 1.0);
+    draw_knots(context, &mut canvas, &rows, &scale)?;
     canvas.color_bar(
         [677.0, 30.0],
         [9.0, (pictures - 44.0).min(150.0)],
@@ -115,10 +77,91 @@ fn draw(context: &Context) -> Result<Drawn, ViewError> {
         notes.push(STRUT_NOTE.to_owned());
     }
     canvas.footnote(&notes);
+    let (low, high) = bounds(rows.iter().map(excess));
+    let finding = format!(
+        "{} knots; excess over the published ropelength {} to {} %.",
+        rows.len(),
+        text::number(low, 3),
+        text::number(high, 3)
+    );
+    Ok(Drawn {
+        picture: canvas.finish()?,
+        csv: table(&rows).finish(),
+        finding,
+    })
+}
+
+/// All knots on one scale, each in its cell with its name.
+fn draw_knots(
+    context: &Context,
+    canvas: &mut Canvas,
+    rows: &[KnotRow],
+    scale: &Scale,
+) -> Result<(), ViewError> {
+    let views = views(context, rows)?;
+    let sides = views.iter().map(|v| {
+        let [x0, y0, x1, y1] = camera::extent(v);
+        ((CELL[0] - 4.0) / (x1 - x0 + 2.0)).min((CELL[1] - 18.0) / (y1 - y0 + 2.0))
+    });
+    let unit = sides.fold(20.0, f64::min);
+    let zoom = canvas.zoom();
+    let images = views
+        .par_iter()
+        .map(|view| image(context, view, scale, unit, zoom))
+        .collect::<Result<Vec<_>, _>>()?;
+    for (i, (row, image)) in rows.iter().zip(&images).enumerate() {
+        let at = [
+            CELL[0] * (i % COLUMNS) as f64,
+            8.0 + CELL[1] * (i / COLUMNS) as f64,
+        ];
+        canvas.image(at, PICTURE, image);
+        let name = text::knot_name(&row.knot);
+        let style = Style::default().middle().bold().size(11.5);
+        canvas.text(at[0] + CELL[0] / 2.0, at[1] + CELL[1] - 4.0, &name, style);
+    }
+    Ok(())
+}
+
+fn views(context: &Context, rows: &[KnotRow]) -> Result<Vec<View>, ViewError> {
+    rows.iter()
+        .map(|r| {
+            let curve = Curve::read(&context.results.join(format!("knots/{}.csv", r.knot)))?;
+            Ok(camera::view(
+                &curve.points,
+                &camera::flattest(&curve.points),
+            ))
+        })
+        .collect()
+}
+
+/// A knot as a tube coloured by curvature, with its struts if they are asked for.
+fn image(
+    context: &Context,
+    view: &View,
+    scale: &Scale,
+    unit: f64,
+    zoom: f64,
+) -> Result<Vec<u8>, ViewError> {
+    let [x0, y0, x1, y1] = camera::extent(view);
+    let radius = if context.struts { THIN } else { 1.0 };
+    let tube = Tube::new(view, &curvature(view), true, radius, scale);
+    let tube = tube.ok_or_else(|| ViewError::Drawing {
+        reason: "a knot is no curve".to_owned(),
+    })?;
+    let rods = if context.struts {
+        rods(view)?
+    } else {
+        Rods::default()
+    };
+    let centre = [(x0 + x1) / 2.0, (y0 + y1) / 2.0];
+    tube_and_rods_png(PICTURE, centre, unit, zoom, &tube, &rods)
+}
+
+fn table(rows: &[KnotRow]) -> Table {
     let mut table = Table::new(
         "knot,length_over_radius,reference,excess_percent,writhe,average_crossing_number,struts,kinks",
     );
-    for r in &rows {
+    for r in rows {
         let numbers = [
             r.length_over_radius,
             r.reference.unwrap_or(f64::NAN),
@@ -130,18 +173,7 @@ fn draw(context: &Context) -> Result<Drawn, ViewError> {
         ];
         table.row(&[&r.knot], &numbers);
     }
-    let (low, high) = bounds(rows.iter().map(excess));
-    let finding = format!(
-        "{} knots; excess over the published ropelength {} to {} %.",
-        rows.len(),
-        text::number(low, 3),
-        text::number(high, 3)
-    );
-    Ok(Drawn {
-        picture: canvas.finish()?,
-        csv: table.finish(),
-        finding,
-    })
+    table
 }
 
 fn numbers(canvas: &mut Canvas, rows: &[KnotRow], top: f64) {

@@ -93,6 +93,18 @@ impl Panel {
 
     /// Draws axes, shaded bands `(from, to, colour, opacity)` along x, and series.
     pub fn draw(&self, canvas: &mut Canvas, plots: Vec<Plot>, bands: &[(f64, f64, String, f64)]) {
+        let mut layout = self.layout();
+        for (from, to, color, opacity) in bands {
+            let band = ShadedRegion::vertical(*from, *to).with_color(color.clone());
+            layout = layout.with_shaded_region(band.with_opacity(*opacity));
+        }
+        let svg = SvgBackend::new().render_scene(&render_multiple(plots, layout));
+        let [left, top, ..] = MARGIN;
+        canvas.fragment(self.at[0] - left, self.at[1] - top, &svg);
+        self.name_axes(canvas);
+    }
+
+    fn layout(&self) -> Layout {
         let [left, top, right, bottom] = MARGIN;
         let tick = |axis: &Axis| {
             let log = axis.log;
@@ -129,10 +141,6 @@ impl Panel {
         layout.show_legend = false;
         layout.suppress_x_ticks = self.x.bare;
         layout.suppress_y_ticks = self.y.bare;
-        for (from, to, color, opacity) in bands {
-            let band = ShadedRegion::vertical(*from, *to).with_color(color.clone());
-            layout = layout.with_shaded_region(band.with_opacity(*opacity));
-        }
         if self.x.log {
             layout = layout.with_log_x();
         }
@@ -145,8 +153,10 @@ impl Panel {
         if let Some(step) = self.y.step {
             layout = layout.with_y_tick_step(step);
         }
-        let svg = SvgBackend::new().render_scene(&render_multiple(plots, layout));
-        canvas.fragment(self.at[0] - left, self.at[1] - top, &svg);
+        layout
+    }
+
+    fn name_axes(&self, canvas: &mut Canvas) {
         let middle = self.at[0] + self.size[0] / 2.0;
         let below = self.at[1] + self.size[1] + if self.x.bare { 26.0 } else { 28.0 };
         canvas.text(

@@ -99,60 +99,84 @@ pub fn measure_set(args: &TradeoffArgs, name: &str, folder: &Path) -> Result<(),
         topo_cli::check(&stop)?;
         let rows = compared(system, &runs);
         write_table(&folder.join(format!("{}-{name}.csv", system.name())), &rows)?;
-        let points: Vec<Point> = read_table(&place(table, "csv"))?;
-        let json = place(table, "json");
-        let mut record: Record = serde_json::from_str(&text(&json)?)
-            .map_err(|e| CliError::Input(format!("{}: {e}", json.display())))?;
         if set == CaseSet::Factor {
-            let cover = factor_of_estimates(system, &points, &rows)
-                .ok_or_else(|| CliError::Input(format!("no case of {} ran", system.name())))?;
-            say!(
-                "{}: {:.3} times the raw estimate covers {:.1} % of the errors of {} cases",
-                system.name(),
-                cover.scale,
-                100.0 * cover.share,
-                cover.n_cases
-            );
-            if args.record {
-                record.factor = Some(Factor {
-                    table: table_hash(&text(&place(table, "csv"))?),
-                    share: cover.share,
-                    scale: cover.scale,
-                    measured: stamp(table, cover.n_cases),
-                });
-                write_record(table, &record)?;
-            }
+            find_factor(table, &rows, args.record)?;
         } else {
-            let factor = record.factor.ok_or_else(|| {
-                CliError::Input(format!(
-                    "{} has no factor yet: run `cargo xtask tradeoff --set factor --record` first",
-                    json.display()
-                ))
-            })?;
-            checked.extend(check_estimates(system, &points, factor.scale, &rows));
+            checked.extend(check_table(table, &rows)?);
         }
     }
     if set == CaseSet::Check {
-        write_table(&folder.join("check.csv"), &checked)?;
-        let report = topo_view::tradeoff::check_report(&checked);
-        data::write(&folder.join("check.md"), report.as_bytes())?;
-        say!("{report}");
-        if args.record {
-            for table in Measured::ALL {
-                let name = table.system().name();
-                let of: Vec<CheckRow> = checked
-                    .iter()
-                    .filter(|r| r.system == name)
-                    .cloned()
-                    .collect();
-                if !of.is_empty() {
-                    record_part(
-                        PAGE,
-                        &format!("{name} check"),
-                        &topo_view::tradeoff::check_report(&of),
-                    )?;
-                }
-            }
+        write_check(&checked, folder, args.record)?;
+    }
+    Ok(())
+}
+
+fn read_record(table: Measured) -> Result<Record, CliError> {
+    let json = place(table, "json");
+    serde_json::from_str(&text(&json)?)
+        .map_err(|e| CliError::Input(format!("{}: {e}", json.display())))
+}
+
+/// The factor between differences and estimates, told and recorded if asked for.
+fn find_factor(table: Measured, rows: &[TradeoffRow], is_recorded: bool) -> Result<(), CliError> {
+    let system = table.system();
+    let points: Vec<Point> = read_table(&place(table, "csv"))?;
+    let mut record = read_record(table)?;
+    let cover = factor_of_estimates(system, &points, rows)
+        .ok_or_else(|| CliError::Input(format!("no case of {} ran", system.name())))?;
+    say!(
+        "{}: {:.3} times the raw estimate covers {:.1} % of the errors of {} cases",
+        system.name(),
+        cover.scale,
+        100.0 * cover.share,
+        cover.n_cases
+    );
+    if is_recorded {
+        record.factor = Some(Factor {
+            table: table_hash(&text(&place(table, "csv"))?),
+            share: cover.share,
+            scale: cover.scale,
+            measured: stamp(table, cover.n_cases),
+        });
+        write_record(table, &record)?;
+    }
+    Ok(())
+}
+
+/// How promises and estimates of a table hold.
+fn check_table(table: Measured, rows: &[TradeoffRow]) -> Result<Vec<CheckRow>, CliError> {
+    let points: Vec<Point> = read_table(&place(table, "csv"))?;
+    let factor = read_record(table)?.factor.ok_or_else(|| {
+        CliError::Input(format!(
+            "{} has no factor yet: run `cargo xtask tradeoff --set factor --record` first",
+            place(table, "json").display()
+        ))
+    })?;
+    Ok(check_estimates(table.system(), &points, factor.scale, rows))
+}
+
+/// The table and the report of a check, told and recorded if asked for.
+fn write_check(checked: &[CheckRow], folder: &Path, is_recorded: bool) -> Result<(), CliError> {
+    write_table(&folder.join("check.csv"), checked)?;
+    let report = topo_view::tradeoff::check_report(checked);
+    data::write(&folder.join("check.md"), report.as_bytes())?;
+    say!("{report}");
+    if !is_recorded {
+        return Ok(());
+    }
+    for table in Measured::ALL {
+        let name = table.system().name();
+        let of: Vec<CheckRow> = checked
+            .iter()
+            .filter(|r| r.system == name)
+            .cloned()
+            .collect();
+        if !of.is_empty() {
+            record_part(
+                PAGE,
+                &format!("{name} check"),
+                &topo_view::tradeoff::check_report(&of),
+            )?;
         }
     }
     Ok(())

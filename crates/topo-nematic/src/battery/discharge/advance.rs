@@ -28,7 +28,7 @@ struct Advance<'a, T> {
     switched: &'a SwitchedNematic,
     settings: &'a DischargeSettings,
     end: FinalState,
-    /// Energy at which the run is over; none where only its time ends it.
+    /// As [`SwitchedNematic::goal`].
     goal: Option<f64>,
     until: f64,
     /// Changes of the energy that may be rounding.
@@ -79,6 +79,16 @@ impl SwitchedNematic {
         Ok(Progressing::fresh(control, self.charged.energy()))
     }
 
+    /// Energy at which the run is over; none where only its time ends it.
+    fn goal(&self, settings: &DischargeSettings, end: &FinalState, is_driven: bool) -> Option<f64> {
+        let stored = self.stored(end);
+        let left = stored.map(|s| (1.0 - settings.until_released) * s.abs());
+        match (left, is_driven) {
+            (None, true) => None,
+            (left, _) => Some(end.energy + left.unwrap_or_else(|| nothing(&self.charged.battery))),
+        }
+    }
+
     /// Changes of the energy that may be rounding: that of the field shows in its distortion, that of the sums in all of the bulk.
     fn noise(&self, scale: f64, total_mass: f64) -> f64 {
         let battery = &self.charged.battery;
@@ -90,6 +100,46 @@ impl SwitchedNematic {
         let bulk = battery.parameters().material.reference_density().abs() * volume;
         16.0 * (rounding * scale.abs() + f64::EPSILON * bulk)
     }
+}
+
+/// The run of a checkpoint, whose field `state` takes over, or a fresh one.
+fn begin(
+    fresh: Progressing,
+    case: &str,
+    until: f64,
+    state: &mut NematicState,
+    hooks: &RunHooks<'_>,
+) -> Result<(Progressing, Option<CoupledMemory>), NematicError> {
+    let resumed = hooks.resume(SCHEMA, case, |(run, q, memory): &Saved| {
+        let is_sound = q.len() == state.q_tensor().len()
+            && q.iter().all(|x| x.is_finite())
+            && memory.iter().all(|memory| memory.fits(q.len()));
+        if !is_sound {
+            return Some("the field is one of another grid");
+        }
+        run.flaw(&fresh, until)
+    })?;
+    Ok(match resumed {
+        Some((run, q, memory)) => {
+            state.q_mut().copy_from_slice(&q);
+            (run, memory)
+        }
+        None => (fresh, None),
+    })
+}
+
+/// Times of outputs, those of the run so far done; `unit` is the diffusion time.
+fn outputs(
+    settings: &DischargeSettings,
+    unit: f64,
+    run: &Progressing,
+) -> Result<Schedule, NematicError> {
+    let mut outputs =
+        Schedule::log_spaced(settings.first_output * unit, settings.outputs_per_decade)?;
+    if let Some(last) = run.samples.last() {
+        outputs.due(last.time, run.n_steps.saturating_sub(1));
+    }
+    Ok(outputs)
 }
 
 impl<'a, T: Real> Advance<'a, T> {
@@ -117,22 +167,7 @@ impl<'a, T: Real> Advance<'a, T> {
         let mut state = switched.state.clone();
         let until = settings.longest * battery.diffusion_time();
         let fresh = switched.fresh(settings)?;
-        let resumed = hooks.resume(SCHEMA, &case, |(run, q, memory): &Saved| {
-            let is_sound = q.len() == state.q_tensor().len()
-                && q.iter().all(|x| x.is_finite())
-                && memory.iter().all(|memory| memory.fits(q.len()));
-            if !is_sound {
-                return Some("the field is one of another grid");
-            }
-            run.flaw(&fresh, until)
-        })?;
-        let (mut run, memory) = match resumed {
-            Some((run, q, memory)) => {
-                state.q_mut().copy_from_slice(&q);
-                (run, memory)
-            }
-            None => (fresh, None),
-        };
+        let (mut run, memory) = begin(fresh, &case, until, &mut state, hooks)?;
         let duration = switched.settings.ramp.filter(|d| run.time < *d);
         let ramp = duration.map(|d| Ramp::begin(switched, d, flow.is_some(), &mut kernel));
         if let Some(ramp) = ramp.as_ref().filter(|_| run.ramped > 0.0) {
@@ -150,14 +185,7 @@ impl<'a, T: Real> Advance<'a, T> {
             run.ledger.record_event("switch", 0.0, removed);
             run.ledger.set_stored(&energy.as_array());
         }
-        let mut outputs = Schedule::log_spaced(
-            settings.first_output * battery.diffusion_time(),
-            settings.outputs_per_decade,
-        )?;
-        if let Some(last) = run.samples.last() {
-            // Outputs up to the last one are done.
-            outputs.due(last.time, run.n_steps.saturating_sub(1));
-        }
+        let outputs = outputs(settings, battery.diffusion_time(), &run)?;
         if let Some(flow) = &mut flow {
             // The energy weighs the molecular field by these masses, and so must the force.
             flow.coupling.set_weights(&kernel.domain.masses());
@@ -169,20 +197,14 @@ impl<'a, T: Real> Advance<'a, T> {
             field.counters = run.counters;
         }
         let is_driven = settings.flow.is_some_and(|f| f.drive != Drive::default());
-        let stored = switched.stored(&end);
-        let left = stored.map(|s| (1.0 - settings.until_released) * s.abs());
-        let goal = match (left, is_driven) {
-            (None, true) => None,
-            (left, _) => Some(end.energy + left.unwrap_or_else(|| nothing(battery))),
-        };
         Ok(Self {
             noise: switched.noise(switched.start(), kernel.domain.total_mass),
             longest: field.longest_step(&kernel),
             earlier_cpu_seconds: run.cpu_seconds,
+            goal: switched.goal(settings, &end, is_driven),
             switched,
             settings,
             end,
-            goal,
             until,
             is_driven,
             kernel,

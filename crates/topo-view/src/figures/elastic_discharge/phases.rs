@@ -9,6 +9,7 @@ use crate::plot::color::{INK, QUIET};
 use crate::plot::panel::{Axis, Panel};
 use crate::plot::style::Style;
 use crate::plot::text;
+use kuva::prelude::Plot;
 
 /// Shades of the knot-type bands, by crossing number: the unknot is left white.
 fn band_color(knot: &str) -> Option<(String, f64)> {
@@ -25,6 +26,32 @@ fn band_color(knot: &str) -> Option<(String, f64)> {
     Some((shade.to_owned(), 1.0))
 }
 
+/// A discharge in the panel.
+struct Shown<'a> {
+    case: Option<&'a Case>,
+    /// Time in T0, and energy over that before the cut.
+    curve: Vec<(f64, f64)>,
+    ink: &'static str,
+}
+
+impl<'a> Shown<'a> {
+    fn new(case: Option<&'a Case>, moments: &[Moment], ink: &'static str) -> Self {
+        let start = case.map_or(1.0, |c| c.first().energy).max(1e-300);
+        let curve = moments
+            .iter()
+            .filter(|m| m.time > 0.0)
+            .map(|m| (m.time, m.energy / start))
+            .collect();
+        Self { case, curve, ink }
+    }
+
+    /// Its line from the left edge of the panel on.
+    fn line(&self, first: f64, width: f64) -> Plot {
+        let seen = self.curve.iter().copied().filter(|p| p.0 >= first);
+        line(seen.collect(), self.ink, width)
+    }
+}
+
 /// Energy against time of the state that passes the most knot types at zero twist (7_4 when
 /// it passes as many as any), beside the same knot at its largest twist.
 pub fn draw(
@@ -39,9 +66,57 @@ pub fn draw(
         .into_iter()
         .min_by(|a, b| a.abs().total_cmp(&b.abs()))
         .unwrap_or(0.0);
+    let Some((case, moments)) = most_types(context, sweep, zero)? else {
+        return Ok(String::new());
+    };
+    let knot = &case.first().knot;
+    let twisted = sweep
+        .of(knot)
+        .into_iter()
+        .last()
+        .filter(|c| c.first().twist != zero);
+    let other = twisted
+        .map(|c| read_first_cut(context, c))
+        .transpose()?
+        .unwrap_or_default();
+    let plain = Shown::new(Some(case), &moments, INK);
+    let dashed = Shown::new(twisted, &other, QUIET);
+    let (_, last) = bounds(plain.curve.iter().chain(&dashed.curve).map(|p| p.0));
+    let first = (last / 3e4)
+        .max(bounds(plain.curve.iter().map(|p| p.0)).0)
+        .min(last / 10.0);
+    let panel = Panel {
+        at,
+        size: [282.0, 178.0],
+        x: Axis::log("Time *t* / *T*_{0}", (first, last * 1.02)),
+        y: Axis::linear("Energy *E*(*t*) / *E*(0)", (0.0, 1.18), 0.2),
+    };
+    let mut plots = vec![plain.line(first, 2.0)];
+    if !dashed.curve.is_empty() {
+        plots.push(dashed.line(first, 1.4));
+    }
+    let bands = stretches(&moments);
+    draw_bands(canvas, &panel, plots, &bands, first);
+    for shown in [&plain, &dashed] {
+        for (x, y) in &shown.curve {
+            let twist = shown.case.map_or(f64::NAN, |c| c.first().twist);
+            table.row(&["c", knot], &[twist, *x, *y, *y, *y]);
+        }
+        name_curve(canvas, &panel, shown, first);
+    }
+    let path: Vec<String> = bands.iter().map(|b| text::knot_name(&b.0)).collect();
+    Ok(format!("Knot types on the way: {}.", path.join(" → ")))
+}
+
+/// The case that passes the most knot types at a twist, 7_4 when it passes as many as any.
+fn most_types<'a>(
+    context: &Context,
+    sweep: &'a Sweep,
+    twist: f64,
+) -> Result<Option<(&'a Case, Vec<Moment>)>, ViewError> {
     let mut best: Option<(usize, &Case, Vec<Moment>)> = None;
     for knot in sweep.knots() {
-        let Some(case) = sweep.at(knot, zero) else {
+        let Some(case) = sweep.at(knot, twist) else {
             continue;
         };
         let moments = read_first_cut(context, case)?;
@@ -50,40 +125,17 @@ pub fn draw(
             best = Some((score, case, moments));
         }
     }
-    let Some((_, case, moments)) = best else {
-        return Ok(String::new());
-    };
-    let knot = case.first().knot.clone();
-    let twisted = sweep
-        .of(&knot)
-        .into_iter()
-        .last()
-        .filter(|c| c.first().twist != zero);
-    let other = twisted
-        .map(|c| read_first_cut(context, c))
-        .transpose()?
-        .unwrap_or_default();
+    Ok(best.map(|(_, case, moments)| (case, moments)))
+}
 
-    // as released shares, from the energy before the cut
-    let scaled = |m: &[Moment], of: Option<&Case>| -> Vec<(f64, f64)> {
-        let start = of.map_or(1.0, |c| c.first().energy).max(1e-300);
-        m.iter()
-            .filter(|m| m.time > 0.0)
-            .map(|m| (m.time, m.energy / start))
-            .collect()
-    };
-    let (curve, dashed) = (scaled(&moments, Some(case)), scaled(&other, twisted));
-    let (_, last) = bounds(curve.iter().chain(&dashed).map(|p| p.0));
-    let first = (last / 3e4)
-        .max(bounds(curve.iter().map(|p| p.0)).0)
-        .min(last / 10.0);
-    let panel = Panel {
-        at,
-        size: [282.0, 178.0],
-        x: Axis::log("Time *t* / *T*_{0}", (first, last * 1.02)),
-        y: Axis::linear("Energy *E*(*t*) / *E*(0)", (0.0, 1.18), 0.2),
-    };
-    let bands = stretches(&moments);
+/// The curves over shaded and named stretches of one knot type.
+fn draw_bands(
+    canvas: &mut Canvas,
+    panel: &Panel,
+    plots: Vec<Plot>,
+    bands: &[(String, f64, f64)],
+    first: f64,
+) {
     let shaded: Vec<(f64, f64, String, f64)> = bands
         .iter()
         .filter_map(|(knot, from, to)| {
@@ -91,49 +143,39 @@ pub fn draw(
             Some((from.max(first), to.max(first * 1.0001), shade, opacity))
         })
         .collect();
-    let clip = |points: &[(f64, f64)]| points.iter().copied().filter(|p| p.0 >= first).collect();
-    let mut plots = vec![line(clip(&curve), INK, 2.0)];
-    if !dashed.is_empty() {
-        plots.push(line(clip(&dashed), QUIET, 1.4));
-    }
     panel.draw(canvas, plots, &shaded);
-    for (knot, from, to) in &bands {
+    for (knot, from, to) in bands {
         let [x0, x1] = [from.max(first), *to].map(|t| panel.place(t, 0.0)[0]);
         if x1 - x0 > 13.0 {
             canvas.text(
                 (x0 + x1) / 2.0,
-                at[1] + 13.0,
+                panel.at[1] + 13.0,
                 &text::knot_name(knot),
                 Style::default().middle().bold().size(10.0),
             );
         }
     }
-    for (points, case, ink) in [(&curve, Some(case), INK), (&dashed, twisted, QUIET)] {
-        for (x, y) in points {
-            let c = case.map(|c| c.first());
-            let twist = c.map_or(f64::NAN, |c| c.twist);
-            table.row(&["c", &knot], &[twist, *x, *y, *y, *y]);
-        }
-        // The name of a curve stands by its fall through 0.62 (the plain one) or 0.3.
-        let level = if ink == INK { 0.62 } else { 0.34 };
-        let beside = points.iter().find(|p| p.1 < level && p.0 >= first);
-        if let (Some((x, y)), Some(c)) = (beside, case) {
-            let [px, py] = panel.place(*x, *y);
-            let label = format!(
-                "{}, θ′*h* = {}",
-                text::knot_name(&knot),
-                text::signed(c.first().twist)
-            );
-            let style = Style::default().halo().size(9.0).color(ink);
-            if ink == INK {
-                canvas.text(px + 6.0, py, &label, style);
-            } else {
-                canvas.text(px - 6.0, py + 3.0, &label, style.end());
-            }
+}
+
+/// The name of a curve stands by its fall through 0.62 (the plain one) or 0.34.
+fn name_curve(canvas: &mut Canvas, panel: &Panel, shown: &Shown<'_>, first: f64) {
+    let ink = shown.ink;
+    let level = if ink == INK { 0.62 } else { 0.34 };
+    let beside = shown.curve.iter().find(|p| p.1 < level && p.0 >= first);
+    if let (Some((x, y)), Some(c)) = (beside, shown.case) {
+        let [px, py] = panel.place(*x, *y);
+        let label = format!(
+            "{}, θ′*h* = {}",
+            text::knot_name(&c.first().knot),
+            text::signed(c.first().twist)
+        );
+        let style = Style::default().halo().size(9.0).color(ink);
+        if ink == INK {
+            canvas.text(px + 6.0, py, &label, style);
+        } else {
+            canvas.text(px - 6.0, py + 3.0, &label, style.end());
         }
     }
-    let path: Vec<String> = bands.iter().map(|b| text::knot_name(&b.0)).collect();
-    Ok(format!("Knot types on the way: {}.", path.join(" → ")))
 }
 
 /// Rows of the first cut of a case.

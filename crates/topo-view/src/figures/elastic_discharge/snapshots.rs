@@ -18,6 +18,31 @@ type Strip = Vec<(Snapshot, Vec<Vector3<f64>>)>;
 /// Snapshots shown of a discharge.
 const SHOWN: usize = 6;
 
+/// A discharge in the panel.
+struct Row<'a> {
+    /// What sets it apart.
+    name: &'static str,
+    case: &'a Case,
+    t99: f64,
+    strip: Strip,
+}
+
+/// Where the panel lies, and what all its rows share.
+struct Layout<'a> {
+    at: [f64; 2],
+    size: [f64; 2],
+    scale: &'a Scale,
+    /// Height of a row.
+    height: f64,
+    /// Length on paper of h.
+    unit: f64,
+}
+
+/// Room for the color bar and for the names of the knots, and between snapshots.
+const BAR: f64 = 56.0;
+const LABEL: f64 = 44.0;
+const GAP: f64 = 7.0;
+
 /// Draws the panel into a box and says which states it shows.
 pub fn draw(
     context: &Context,
@@ -26,6 +51,48 @@ pub fn draw(
     at: [f64; 2],
     size: [f64; 2],
 ) -> Result<String, ViewError> {
+    let rows = rows(context.results, sweep)?;
+    if rows.is_empty() {
+        return Ok(String::new());
+    }
+    let high = high_density(&rows);
+    let scale = Scale::viridis_root(high.max(1e-12));
+    let height = size[1] / rows.len() as f64;
+    let layout = Layout {
+        at,
+        size,
+        scale: &scale,
+        height,
+        unit: unit(&rows, size[0], height),
+    };
+    for (k, row) in rows.iter().enumerate() {
+        layout.draw_row(canvas, row, at[1] + height * k as f64)?;
+    }
+    let bar_at = [at[0] + size[0] - 42.0, at[1] + 24.0];
+    let bar_size = [9.0, size[1] - 58.0];
+    canvas.color_bar(
+        bar_at,
+        bar_size,
+        &scale,
+        &root_ticks(high),
+        "Energy density *w* / *E*_{b}*h*^{2}",
+    );
+    let said: Vec<String> = rows
+        .iter()
+        .map(|row| {
+            format!(
+                "{} ({}) t99 = {} T₀",
+                text::knot_name(&row.case.first().knot),
+                row.name,
+                text::number(row.t99, 2)
+            )
+        })
+        .collect();
+    Ok(format!("Snapshots at zero twist: {}.", said.join(", ")))
+}
+
+/// The fastest and the slowest discharge at zero twist, or the only one.
+fn rows<'a>(results: &Path, sweep: &'a Sweep) -> Result<Vec<Row<'a>>, ViewError> {
     let zero = sweep
         .twists()
         .into_iter()
@@ -38,41 +105,61 @@ pub fn draw(
         .filter_map(|c| Some((c, c.first().t99?)))
         .collect();
     cases.sort_by(|a, b| a.1.total_cmp(&b.1));
-    let rows = match (cases.first(), cases.last()) {
+    let shown = match (cases.first(), cases.last()) {
         (Some(fast), Some(slow)) if cases.len() > 1 => vec![("fast", *fast), ("slow", *slow)],
         (Some(only), _) => vec![("", *only)],
-        _ => return Ok(String::new()),
+        _ => Vec::new(),
     };
-    let mut strips = Vec::new();
-    for (_, (case, _)) in &rows {
-        strips.push(strip(context.results, case)?);
-    }
-    let all = strips
-        .iter()
-        .flatten()
-        .flat_map(|s| s.0.curve.density.iter().copied());
-    // The ends of the scale leave out the hottest spots of the tight bends.
-    let mut sorted: Vec<f64> = all.collect();
+    shown
+        .into_iter()
+        .map(|(name, (case, t99))| {
+            Ok(Row {
+                name,
+                case,
+                t99,
+                strip: strip(results, case)?,
+            })
+        })
+        .collect()
+}
+
+/// End of the scale: it leaves out the hottest spots of the tight bends.
+fn high_density(rows: &[Row<'_>]) -> f64 {
+    let shots = rows.iter().flat_map(|row| &row.strip);
+    let mut sorted: Vec<f64> = shots
+        .flat_map(|s| s.0.curve.density.iter().copied())
+        .collect();
     sorted.sort_by(f64::total_cmp);
-    let high = sorted
+    sorted
         .get((0.985 * sorted.len() as f64) as usize)
         .copied()
-        .unwrap_or(1.0);
-    let scale = Scale::viridis_root(high.max(1e-12));
+        .unwrap_or(1.0)
+}
 
-    let (bar, label, gap) = (56.0, 44.0, 7.0);
-    let room = size[0] - bar - label - gap * SHOWN as f64;
-    let height = size[1] / rows.len() as f64;
-    let widths = strips
+/// Length on paper of h, such that all rows fit.
+fn unit(rows: &[Row<'_>], width: f64, height: f64) -> f64 {
+    let room = width - BAR - LABEL - GAP * SHOWN as f64;
+    let widths = rows
         .iter()
-        .map(|s| s.iter().map(|(_, v)| span(v)[0]).sum::<f64>());
+        .map(|row| row.strip.iter().map(|(_, v)| span(v)[0]).sum::<f64>());
     let unit = widths.map(|w| room / w).fold(8.0, f64::min);
-    let tallest = bounds(strips.iter().flatten().map(|(_, v)| span(v)[1])).1;
-    let unit = unit.min((height - 20.0) / tallest);
-    for (k, ((name, (case, _)), shots)) in rows.iter().zip(&strips).enumerate() {
-        let top = at[1] + height * k as f64;
+    let views = rows.iter().flat_map(|row| &row.strip);
+    let tallest = bounds(views.map(|(_, v)| span(v)[1])).1;
+    unit.min((height - 20.0) / tallest)
+}
+
+impl Layout<'_> {
+    fn draw_row(&self, canvas: &mut Canvas, row: &Row<'_>, top: f64) -> Result<(), ViewError> {
+        let Self {
+            at,
+            size,
+            scale,
+            height,
+            unit,
+        } = *self;
+        let shots = &row.strip;
         let middle = top + (height - 18.0) / 2.0;
-        let knot = text::knot_name(&case.first().knot);
+        let knot = text::knot_name(&row.case.first().knot);
         canvas.text(
             at[0] + 14.0,
             middle,
@@ -82,17 +169,17 @@ pub fn draw(
         canvas.text(
             at[0] + 14.0,
             middle + 13.0,
-            name,
+            row.name,
             Style::default().size(9.5).color(QUIET),
         );
         let used: f64 = shots.iter().map(|(_, v)| span(v)[0] * unit).sum();
-        let free = (size[0] - bar - label - used) / shots.len().max(1) as f64;
-        let mut x = at[0] + label + free / 2.0;
+        let free = (size[0] - BAR - LABEL - used) / shots.len().max(1) as f64;
+        let mut x = at[0] + LABEL + free / 2.0;
         for (shot, view) in shots {
             let [w, h] = span(view);
             let [x0, y0, x1, y1] = camera::extent(view);
             let tube =
-                Tube::new(view, &shot.curve.density, false, 1.0, &scale).ok_or_else(|| {
+                Tube::new(view, &shot.curve.density, false, 1.0, scale).ok_or_else(|| {
                     ViewError::Drawing {
                         reason: format!("snapshot at {} is no curve", shot.time),
                     }
@@ -114,27 +201,8 @@ pub fn draw(
             );
             x += side[0] + free;
         }
+        Ok(())
     }
-    let bar_at = [at[0] + size[0] - 42.0, at[1] + 24.0];
-    let bar_size = [9.0, size[1] - 58.0];
-    canvas.color_bar(
-        bar_at,
-        bar_size,
-        &scale,
-        &root_ticks(high),
-        "Energy density *w* / *E*_{b}*h*^{2}",
-    );
-    let said: Vec<String> = rows
-        .iter()
-        .map(|(name, (case, t))| {
-            format!(
-                "{} ({name}) t99 = {} T₀",
-                text::knot_name(&case.first().knot),
-                text::number(*t, 2)
-            )
-        })
-        .collect();
-    Ok(format!("Snapshots at zero twist: {}.", said.join(", ")))
 }
 
 /// A time in T0 with as many decimals as it needs.
