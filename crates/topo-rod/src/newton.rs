@@ -19,6 +19,8 @@ pub(crate) struct NewtonMatrix {
     driven: Vec<(usize, usize, Matrix3<f64>)>,
     fixed: Vec<bool>,
     floating: bool,
+    /// Whether a term may hold the rod as a whole.
+    is_tethered: bool,
     chain: Chain,
     work: Vec<f64>,
     right: Vec<f64>,
@@ -34,6 +36,12 @@ impl NewtonMatrix {
             floating,
             ..Self::default()
         }
+    }
+
+    /// Grounds a floating rod by a trace only, for terms that may hold it as a whole: with their stiffness in the matrix a firm ground
+    /// would be a spring at one vertex, and without it a trace is enough.
+    pub(crate) fn loosen_ground(&mut self) {
+        self.is_tethered = true;
     }
 
     pub(crate) fn n_nonzeros(&self) -> usize {
@@ -118,10 +126,10 @@ impl NewtonMatrix {
             add(3 * n + place, (i, j), identity(-c), false);
         }
         for i in 0..n {
-            let grounded = if self.floating && i == 0 {
-                viscous
-            } else {
-                0.0
+            let grounded = match (self.floating && i == 0, self.is_tethered) {
+                (true, false) => viscous,
+                (true, true) => LOOSE_GROUND * viscous,
+                (false, _) => 0.0,
             };
             let held = if self.fixed[i] { 1.0 } else { grounded };
             for k in [0, 4, 8] {
@@ -213,6 +221,9 @@ impl NewtonMatrix {
         }
     }
 }
+
+/// Ground of a rod that may be held as a whole, over its viscosity.
+const LOOSE_GROUND: f64 = 1e-9;
 
 /// Adds c (u_a − u_b)² as a matrix: component-major in, vertex-major out.
 #[inline]

@@ -2,13 +2,13 @@
 
 use serde::Serialize;
 use serde_json::json;
-use topo_rod::{ChargedRod, Guards, RodSample, energy_density};
+use topo_rod::{ChargedRod, Guards, RodSample};
 
 use super::job::{CaseJob, FollowedCut};
 use crate::LabError;
 use crate::folder::Outcome;
 use crate::sweep::{About, Place, value};
-use topo_analysis::{SweepRow, Timeline};
+use topo_analysis::{Further, SweepRow, Timeline};
 
 /// Everything that a case has made.
 #[derive(Clone, Copy)]
@@ -54,6 +54,8 @@ struct SeriesRow<'a> {
     twist_energy: f64,
     stretch: f64,
     contact_energy: f64,
+    #[serde(skip_serializing_if = "Further::is_empty")]
+    further: Further,
     dissipated_viscosity: f64,
     dissipated_twist: f64,
     dissipated_friction: f64,
@@ -77,10 +79,11 @@ fn series_row<'a>(
         cut,
         time: s.time,
         energy: s.elastic(),
-        bend: s.stored[0],
-        twist_energy: s.stored[1],
-        stretch: s.stored[2],
-        contact_energy: s.stored[3],
+        bend: s.stored.of("bend"),
+        twist_energy: s.stored.of("twist"),
+        stretch: s.stored.of("stretch"),
+        contact_energy: s.stored.of("contact"),
+        further: s.stored.further().collect(),
         dissipated_viscosity: s.dissipated[0],
         dissipated_twist: s.dissipated[1],
         dissipated_friction: s.dissipated[2],
@@ -169,7 +172,7 @@ pub(super) fn write_case(made: &MadeCase<'_>, place: &Place<'_>) -> Result<(), L
         );
         for k in snapshot_indices(samples, discharge.start) {
             let state = &samples[k].state;
-            let density = energy_density(&case.rod, state);
+            let density = charged.battery().energy_density(state);
             snapshots.extend(
                 state
                     .vertices()
