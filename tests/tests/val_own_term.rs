@@ -448,6 +448,8 @@ fn law_a_term_from_outside_is_found_everywhere() {
     assert!(sweep_held.of("t50")[0] < 0.9 * t50);
     // resumed, and never mixed with another
     assert_eq!((run(&trapped).n_computed, run(&trapped).n_reused), (0, 1));
+    let again = Columns::read(&trapped.results(folder.path()).join("sweep.csv"));
+    assert_eq!((&again.0, &again.1), (&sweep.0, &sweep.1));
     let name = |scene: &ElasticScene| scene.case_name(&scene.cases(&table).unwrap()[0]);
     let names = [&plain, &trapped, &held].map(name);
     assert!(names[0] != names[1] && names[1] != names[2], "{names:?}");

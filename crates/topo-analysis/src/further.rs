@@ -11,7 +11,7 @@ pub(crate) const FIELD: &str = "further";
 /// empty. One cell, as `trap=0.25;wall=1.5`, wherever else a row is kept.
 ///
 /// # Validation
-/// `further_energies_are_columns_of_their_name`
+/// `further_energies_are_columns_of_their_name`, `energies_come_back_from_one_cell`
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Further(Vec<(String, f64)>);
 
@@ -110,4 +110,22 @@ pub(crate) fn expanded(table: Vec<u8>) -> csv::Result<Vec<u8>> {
         write(row, names.iter().map(cell).collect())?;
     }
     writer.into_inner().map_err(|e| e.into_error().into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn energies_come_back_from_one_cell() {
+        let all: Further = [("trap", 1.0 / 3.0), ("wall", -1e-300)]
+            .into_iter()
+            .collect();
+        assert_eq!(all.text(), "trap=0.3333333333333333;wall=-1e-300");
+        assert_eq!(Further::parse(&all.text()), Some(all));
+        assert_eq!(Further::parse(""), Some(Further::default()));
+        for wrong in ["trap", "trap=", "trap=x"] {
+            assert_eq!(Further::parse(wrong), None, "{wrong}");
+        }
+    }
 }

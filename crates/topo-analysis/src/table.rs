@@ -164,11 +164,8 @@ mod tests {
         assert_eq!(of(0), ["0.3333333333333333", "2.0", ""]);
         assert_eq!(of(1), ["0.25", "", "1e-9"]);
         assert_eq!(&cells[1][0], "b,c");
-        // kept whole where a case is resumed from, and left out where a table is read
-        let kept = serde_json::to_string(&rows[0]).unwrap();
-        assert_eq!(serde_json::from_str::<SweepRow>(&kept).unwrap(), rows[0]);
+        // left out where a table is read
         let read: Vec<SweepRow> = parse_table(Path::new("sweep.csv"), &bytes).unwrap();
         assert_eq!(read[1].further, Further::default());
-        assert!(serde_json::from_str::<Further>("\"trap\"").is_err());
     }
 }

@@ -46,7 +46,9 @@ pub(crate) fn checked_name(
 ///
 /// Cloned and shared between threads with the battery that has it.
 #[derive(Clone)]
-pub struct TermFactory(Arc<dyn Fn(&RodState) -> Box<dyn EnergyTerm> + Send + Sync>);
+pub struct TermFactory(Arc<Make>);
+
+type Make = dyn Fn(&RodState) -> Box<dyn EnergyTerm> + Send + Sync;
 
 impl TermFactory {
     /// A factory that calls `make`.
