@@ -92,7 +92,14 @@ impl Setup {
     /// # Panics
     /// When the parameters are refused or the state has no energy.
     pub fn simulation(&self, state: RodState) -> RodSimulation {
-        let mut model = self.model(&state);
+        self.simulation_of(self.model(&state), state)
+    }
+
+    /// A simulation of `model` from `state`.
+    ///
+    /// # Panics
+    /// When the state has no energy.
+    pub fn simulation_of(&self, mut model: RodModel, state: RodState) -> RodSimulation {
         model.start(&state).expect("a start state with an energy");
         let control = StepControl::new(self.accuracy.tolerance, self.first_step)
             .and_then(|c| c.with_limits(1e-12, self.longest_step))

@@ -9,6 +9,7 @@
 
 mod elastic;
 mod error;
+mod further;
 mod nematic;
 mod statistics;
 mod table;
@@ -20,6 +21,7 @@ pub use elastic::{
     Ensemble, Regime, Resonance, SweepRow, crossover, ensembles, regime, resonances,
 };
 pub use error::AnalysisError;
+pub use further::Further;
 pub use nematic::{
     BUCKLED, Flow, LinePoint, NematicResonance, NematicRow, NematicSample, SlicePoint, buckling,
     late_rate, nematic_resonance, resonance_peak,

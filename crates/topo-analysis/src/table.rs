@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use topo_core::write_atomic_bytes;
 
 use crate::AnalysisError;
+use crate::further::expanded;
 
 /// One knot: lengths in units of the tube radius.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -38,7 +39,7 @@ pub struct KnotRow {
     pub cpu_seconds: f64,
 }
 
-/// Writes rows as CSV with a header, atomically.
+/// Writes rows as CSV with a header, atomically. A field `further` of type [`Further`](crate::Further) becomes columns of their own.
 ///
 /// # Errors
 /// A file that cannot be written, with its path and the remedy.
@@ -59,12 +60,13 @@ pub fn table_bytes<T: Serialize>(path: &Path, rows: &[T]) -> Result<Vec<u8>, Ana
     for row in rows {
         writer.serialize(row).map_err(wrong)?;
     }
-    writer
+    let table = writer
         .into_inner()
-        .map_err(|e| wrong(e.into_error().into()))
+        .map_err(|e| wrong(e.into_error().into()))?;
+    expanded(table).map_err(wrong)
 }
 
-/// Reads rows of a CSV with a header.
+/// Reads rows of a CSV with a header; columns that the rows do not have are left out.
 ///
 /// # Errors
 /// A file that cannot be read or a row that does not fit, with path and line.
@@ -96,7 +98,7 @@ pub fn parse_table<T: DeserializeOwned>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::SweepRow;
+    use crate::{Further, SweepRow};
 
     #[test]
     fn tables_come_back_as_written_and_carry_the_agreed_header() {
@@ -129,5 +131,41 @@ mod tests {
             "knot,vertices,length_over_radius,reference,excess_percent,writhe,average_crossing_number,struts,kinks,alexander,determinant,signature,cpu_seconds"
         );
         assert!(read_table::<SweepRow>(&path).is_err());
+    }
+
+    /// Each name is a column behind the standard energies; where the table has such a column, `_energy` tells it apart.
+    #[test]
+    fn further_energies_are_columns_of_their_name() {
+        let row = |case: &str, further: &[(&str, f64)]| SweepRow {
+            case: case.into(),
+            further: further.iter().copied().collect(),
+            ..Default::default()
+        };
+        let rows = [
+            row("a", &[("trap", 1.0 / 3.0), ("writhe", 2.0)]),
+            row("b,c", &[("wall", 1e-9), ("trap", 0.25)]),
+        ];
+        let bytes = table_bytes(Path::new("sweep.csv"), &rows).unwrap();
+        let plain = table_bytes(Path::new("sweep.csv"), &[SweepRow::default()]).unwrap();
+        let lines = |bytes: &[u8]| -> Vec<String> {
+            let text = String::from_utf8(bytes.to_vec()).unwrap();
+            text.lines().map(str::to_owned).collect()
+        };
+        let (found, plain) = (lines(&bytes), lines(&plain));
+        let more = ",stretch,trap,writhe_energy,wall,energy_other_image,";
+        assert_eq!(
+            found[0],
+            plain[0].replace(",stretch,energy_other_image,", more)
+        );
+        let mut reader = csv::Reader::from_reader(bytes.as_slice());
+        let cells: Vec<_> = reader.records().map(Result::unwrap).collect();
+        let place = plain[0].split(',').position(|c| c == "stretch").unwrap();
+        let of = |k: usize| -> Vec<&str> { cells[k].iter().skip(place + 1).take(3).collect() };
+        assert_eq!(of(0), ["0.3333333333333333", "2.0", ""]);
+        assert_eq!(of(1), ["0.25", "", "1e-9"]);
+        assert_eq!(&cells[1][0], "b,c");
+        // left out where a table is read
+        let read: Vec<SweepRow> = parse_table(Path::new("sweep.csv"), &bytes).unwrap();
+        assert_eq!(read[1].further, Further::default());
     }
 }

@@ -29,8 +29,8 @@ pub use battery::{Battery, Checked, Options, Scene, Stage, Sweep, Swept, parse_s
 pub use cost::{Cost, Estimate, Probe};
 pub use elastic::{
     ACCURACY_CASES, AccuracyRow, Cuts, Elastic, ElasticCase, ElasticReport, ElasticScene, NEAR_TIE,
-    Names, OwnKnots, Purpose, RESULTS_VERSION, Rods, ShapeFrame, Variant, discharge_frames,
-    estimate_sweep, measure_accuracy, perturbed, reference_scene, run_sweep,
+    Names, OwnKnots, OwnTerm, Purpose, RESULTS_VERSION, Rods, ShapeFrame, Variant,
+    discharge_frames, estimate_sweep, measure_accuracy, perturbed, reference_scene, run_sweep,
 };
 pub use error::LabError;
 pub use folder::{Outcome, identity, writable};

@@ -10,7 +10,12 @@ use topo_core::{
     Polyline, Rkc2, RosenbrockW, Sample, Scheduled, Simulation, StepControl, StopReason,
 };
 
-use crate::{Accuracy, Guards, IntegratorKind, RodError, RodModel, RodParameters, RodState, Tube};
+use crate::contact::ContactPairs;
+use crate::energy::{At, EnergyTerm, TermFactory, terms_of};
+use crate::{
+    Accuracy, Ends, Geometry, Guards, IntegratorKind, RodError, RodModel, RodParameters, RodState,
+    Tube,
+};
 
 /// A tied fibre, ready to be twisted, fused and charged.
 #[derive(Debug, Clone)]
@@ -23,6 +28,8 @@ pub struct RodBattery {
     /// In its own unit.
     centreline: Polyline,
     start: RodState,
+    /// Terms of the caller's own.
+    own_terms: Vec<TermFactory>,
 }
 
 impl RodBattery {
@@ -88,7 +95,58 @@ impl RodBattery {
             ropelength,
             centreline,
             start,
+            own_terms: Vec::new(),
         })
+    }
+
+    /// The same battery with one more energy term, of the caller's own, in every phase: `make` is called with the state from which
+    /// a phase starts, closed for the charge and open for the discharge.
+    ///
+    /// Vertices of the open rod are numbered from the cut, so that a term which tells vertices apart does so by where they are.
+    ///
+    /// # Errors
+    /// A name that is no column of a table, or that another part of the energy account has.
+    ///
+    /// # Validation
+    /// `val_circle_in_a_trap_shrinks_as_its_closed_form`, `val_cut_circle_in_a_weak_trap`
+    pub fn with(
+        mut self,
+        make: impl Fn(&RodState) -> Box<dyn EnergyTerm> + Send + Sync + 'static,
+    ) -> Result<Self, RodError> {
+        self.own_terms.push(TermFactory::new(make));
+        self.model(&self.start, Ends::default())?;
+        Ok(self)
+    }
+
+    /// The model of a phase that starts from `state`.
+    pub(crate) fn model(&self, state: &RodState, ends: Ends) -> Result<RodModel, RodError> {
+        let (accuracy, guards) = (&self.accuracy, self.guards);
+        let model = RodModel::new(&self.parameters, &self.tube, accuracy, guards, ends, state)?;
+        let mut own = self.own_terms.iter();
+        own.try_fold(model, |model, term| model.with(term.make(state)))
+    }
+
+    /// Elastic energy per area and length at each vertex of `state`, in E_b: that of bend, twist, stretch and further elastic terms.
+    ///
+    /// Times A it is the density in E_b h² that the figures show. Sums with the vertices' share of arclength to the elastic energy.
+    ///
+    /// # Validation
+    /// `val_density_of_a_bent_twisted_stretched_coil`, `law_density_sums_to_the_elastic_energy`
+    pub fn energy_density(&self, state: &RodState) -> Vec<f64> {
+        let mut terms = terms_of(&self.parameters, &self.tube);
+        terms.extend(self.own_terms.iter().map(|term| term.make(state)));
+        let range = self.tube.contact_diameter.max(self.tube.friction_range);
+        let mut pairs = ContactPairs::new(range, self.accuracy.skin);
+        if !self.own_terms.is_empty() {
+            pairs.set_cyclic(state.is_closed());
+            pairs.update(state);
+        }
+        let at = At {
+            state,
+            geometry: &Geometry::new(state),
+            pairs: &pairs,
+        };
+        crate::density::energy_density(&terms, at)
     }
 
     /// The same battery started from `curve`, its [`centreline`](Self::centreline) with small displacements, as the imperfections

@@ -1,25 +1,19 @@
 //! Elastic energy density along the rod.
 
-use crate::{Geometry, RodParameters, RodState};
+use crate::energy::{At, EnergyKind, EnergyTerm, RodParts};
 
-/// Elastic energy per area and length at each vertex (bend, twist and stretch; contact left out), in E_b.
+/// Elastic energy per area and length at each vertex, in E_b: that of the elastic terms, in the order of tables.
 ///
 /// Times A it is the density in E_b h² that the figures show. Sums with the vertices' share of arclength to the elastic energy.
-pub fn energy_density(parameters: &RodParameters, state: &RodState) -> Vec<f64> {
-    let g = Geometry::new(state);
-    let (l0, m, n) = (state.rest_length(), state.twists(), state.n_vertices());
-    let twist_ratio = parameters.twist.map_or(0.0, |_| parameters.twist_ratio);
-    let stretch = |j: usize| 0.5 * parameters.stretch_ratio * (g.edge_length[j] / l0 - 1.0).powi(2);
-    (0..n)
-        .map(|i| {
-            if !state.is_closed() && (i == 0 || i + 1 == n) {
-                return stretch(if i == 0 { 0 } else { n - 2 });
-            }
-            let bend = (1.0 - g.cosine[i]) / (2.0 * l0 * l0 * (1.0 + g.cosine[i]));
-            let twist = twist_ratio * m[i] * m[i] / (8.0 * l0 * l0);
-            bend + twist + 0.5 * (stretch(state.edge_before(i)) + stretch(i))
-        })
-        .collect()
+pub(crate) fn energy_density(terms: &[Box<dyn EnergyTerm>], at: At<'_>) -> Vec<f64> {
+    let mut density = vec![0.0; at.state.n_vertices()];
+    for part in RodParts::of(terms).iter() {
+        let mut own = terms.iter().filter(|term| term.name() == part.name);
+        if let (EnergyKind::Elastic, Some(term)) = (part.kind, own.next()) {
+            term.add_density(at, &mut density);
+        }
+    }
+    density
 }
 
 /// Mean of a density over windows of width π h (the least arc over which a tube can turn back).

@@ -8,6 +8,9 @@
 
 mod bend;
 mod contact;
+mod gradient;
+mod list;
+mod parts;
 mod stretch;
 mod twist;
 
@@ -16,6 +19,10 @@ mod tests;
 
 pub use bend::Bend;
 pub use contact::ContactEnergy;
+pub use gradient::gradient_error;
+pub use list::TermFactory;
+pub(crate) use list::{checked_name, terms_of};
+pub use parts::{EnergyKind, EnergyPart, RodParts, StoredEnergy};
 pub use stretch::Stretch;
 pub use twist::Twist;
 
@@ -31,8 +38,19 @@ pub struct At<'a> {
     pub state: &'a RodState,
     /// Tangents and curvatures of that state.
     pub geometry: &'a Geometry,
-    /// Pairs of vertices in reach of each other.
+    /// Pairs of vertices in reach of each other, the larger of contact diameter and friction range; none without either.
     pub pairs: &'a ContactPairs,
+}
+
+impl At<'_> {
+    /// Arclength that vertex `i` stands for, in h: that of an edge, half of it at a free end.
+    pub fn share(&self, i: usize) -> f64 {
+        if self.state.interior().contains(&i) {
+            self.state.rest_length()
+        } else {
+            0.5 * self.state.rest_length()
+        }
+    }
 }
 
 /// Generalised force −∂e/∂(x, θ): a vector a vertex, a torque an edge.
@@ -92,17 +110,48 @@ impl Stiffness {
     }
 }
 
-/// One term of the energy.
+/// One term e(x, θ) of the energy, for the terms of this crate as for one of a caller's own.
+///
+/// ```math
+/// e = E/A = Σ_{terms} e_{term}(x, θ),   f_i = −∂e/∂x_i,   τ_j = −∂e/∂θ_j
+/// ```
+///
+/// Units: lengths in h, energies per cross section area in E_b h, forces in E_b, torques in E_b h, stiffness in E_b/h, densities in
+/// E_b. A term of energy w a length stores Σ_i w_i l_i, with l_i = l_0 at every vertex, l_0/2 at those of free ends
+/// ([`At::share`]), and has the density w_i.
+///
+/// Everything else follows the list of terms: ledger, curves, samples, tables, energy density and, for an
+/// [elastic](EnergyKind::Elastic) term, the end of a discharge and its times. These count down to zero, so the least energy of an
+/// elastic term should be zero. The spectral bound of the stabilised integrator is measured on the forces and asks for nothing.
+///
+/// What holds a rod is its ends alone: the viscosity is internal, so that a rod with free ends would follow a force on the whole of it
+/// at once. Its centroid is kept instead, and of forces that do not sum to zero the mean is taken out, which does no work. Torques about
+/// the tangents of a free rod must sum to zero.
+///
+/// [`RodBattery::with`](crate::RodBattery::with) and [`RodModel::with`](crate::RodModel::with) add a term of the caller's own.
+/// [`gradient_error`] checks its force.
+///
+/// # Validation
+/// `val_circle_in_a_trap_shrinks_as_its_closed_form`, `val_cut_circle_in_a_weak_trap` add one from outside.
 pub trait EnergyTerm: Send {
-    /// Name used in the ledger and in tables.
+    /// Name used in the ledger and in tables: lower case letters, digits and `_`.
     fn name(&self) -> &'static str;
+
+    /// What becomes of its energy.
+    fn kind(&self) -> EnergyKind {
+        EnergyKind::Elastic
+    }
 
     /// Energy per area at a state.
     fn energy(&self, at: At<'_>) -> f64;
 
-    /// Adds −∂e/∂x and −∂e/∂θ, and returns the energy.
+    /// Adds −∂e/∂x and −∂e/∂θ, and returns the energy. Called at every step: allocates nothing.
     fn add_force(&self, at: At<'_>, force: &mut Force) -> f64;
 
     /// Adds a positive semidefinite part of ∂²e/∂x² (Gauss–Newton). The integrator keeps its order with any matrix; a good one lets it take long steps.
     fn add_stiffness(&self, at: At<'_>, stiffness: &mut Stiffness);
+
+    /// Adds the energy per area and length at each vertex, which sums with the vertices' shares of arclength to the energy; asked of
+    /// elastic terms only.
+    fn add_density(&self, at: At<'_>, density: &mut [f64]);
 }

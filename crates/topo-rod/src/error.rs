@@ -63,6 +63,14 @@ pub enum RodError {
         /// The vertex where two edges are opposite.
         vertex: usize,
     },
+    /// An energy term of the caller's own cannot stand beside the others.
+    #[error("the energy term \"{name}\" cannot be added: {reason}")]
+    Term {
+        /// Its name.
+        name: &'static str,
+        /// What would be right.
+        reason: &'static str,
+    },
     /// The start state has no finite energy.
     #[error("the rod cannot start: {0}")]
     Start(#[from] topo_core::Rejection),

@@ -30,7 +30,7 @@ pub use battery::cut::{CutCandidate, CutRod, CutSite, cut_candidates};
 pub use battery::discharge::{Discharge, DischargeSettings};
 pub use battery::record::{PhaseReport, RodSample, RunRecord};
 pub use circle::{cut_circle_energy, cut_circle_time};
-pub use density::{energy_density, smoothed_density};
+pub use density::smoothed_density;
 pub use ends::{EndCondition, EndMotion, Ends};
 pub use error::RodError;
 pub use geometry::Geometry;

@@ -13,11 +13,13 @@ use nalgebra::Vector3;
 use topo_core::{Ledger, Model, Rejection};
 
 use crate::contact::ContactPairs;
-use crate::energy::{At, Bend, ContactEnergy, EnergyTerm, Force, Stiffness, Stretch, Twist};
+use crate::energy::{
+    At, ContactEnergy, EnergyTerm, Force, RodParts, Stiffness, Twist, checked_name, terms_of,
+};
 use crate::friction::Friction;
 use crate::guard::{RiseBudget, certify, largest_displacement};
 use crate::newton::{NewtonMatrix, NewtonTwist};
-use crate::viscosity::{CentrelineViscosity, TwistViscosity};
+use crate::viscosity::{CentrelineViscosity, TwistViscosity, remove_mean};
 use crate::{Accuracy, Ends, Geometry, Guards, RodError, RodParameters, RodState, Tube};
 use expected::Expected;
 use parts::{Accepted, Frozen, unsolvable};
@@ -27,6 +29,9 @@ pub(crate) use parts::CHANNELS;
 /// Terms, mobility, guards and ledger of one rod.
 pub struct RodModel {
     terms: Vec<Box<dyn EnergyTerm>>,
+    parts: RodParts,
+    /// Whether there are terms whose forces may act on the rod as a whole.
+    has_own_terms: bool,
     twist: Option<Twist>,
     contact: Option<ContactEnergy>,
     expected: Expected,
@@ -84,13 +89,8 @@ struct Named {
 
 impl Named {
     fn of(parameters: &RodParameters, tube: &Tube) -> Self {
-        let twist = parameters.twist.map(|_| Twist {
-            ratio: parameters.twist_ratio,
-        });
-        let contact = parameters.contact.map(|contact| ContactEnergy {
-            stiffness: contact.stiffness,
-            diameter: tube.contact_diameter,
-        });
+        let twist = Twist::of(parameters);
+        let contact = ContactEnergy::of(parameters, tube);
         let friction = parameters
             .friction
             .filter(|f| f.ratio > 0.0)
@@ -108,21 +108,6 @@ impl Named {
             friction,
             reach,
         }
-    }
-
-    /// Terms of the energy, in the order of the ledger.
-    fn terms(&self, stretch_ratio: f64) -> Vec<Box<dyn EnergyTerm>> {
-        let stretch = Stretch {
-            ratio: stretch_ratio,
-        };
-        let mut terms: Vec<Box<dyn EnergyTerm>> = vec![Box::new(Bend), Box::new(stretch)];
-        if let Some(twist) = self.twist {
-            terms.push(Box::new(twist));
-        }
-        if let Some(contact) = self.contact {
-            terms.push(Box::new(contact));
-        }
-        terms
     }
 
     fn pairs(&self, skin: f64, is_closed: bool) -> ContactPairs {
@@ -171,7 +156,7 @@ impl RodModel {
                 needed: "an open",
             });
         }
-        let terms = named.terms(parameters.stretch_ratio);
+        let terms = terms_of(&parameters, tube);
         let pairs = named.pairs(accuracy.skin, state.is_closed());
         let (n_vertices, n_edges) = (state.n_vertices(), state.n_edges());
         let held_vertices = ends.held_vertices(state);
@@ -184,6 +169,8 @@ impl RodModel {
         let fixed_edges = marked(n_edges, held_edges.iter().map(|h| h.0));
         let names: Vec<&'static str> = terms.iter().map(|t| t.name()).collect();
         Ok(Self {
+            parts: RodParts::of(&terms),
+            has_own_terms: false,
             twist,
             contact,
             expected: Expected::new(accuracy.tolerance),
@@ -220,6 +207,29 @@ impl RodModel {
             longest_step: f64::INFINITY,
             terms,
         })
+    }
+
+    /// The model with one more term, of the caller's own, last in the account: before it is [started](Self::start).
+    ///
+    /// # Errors
+    /// A name that is no column of a table, or that another part of the energy account has.
+    ///
+    /// # Validation
+    /// `val_straight_rod_in_a_trap_is_pressed_to_a_sinh`
+    pub fn with(mut self, term: Box<dyn EnergyTerm>) -> Result<Self, RodError> {
+        checked_name(&*term, &self.terms)?;
+        self.terms.push(term);
+        self.parts = RodParts::of(&self.terms);
+        self.has_own_terms = true;
+        self.newton.loosen_ground();
+        self.ledger = self.empty_ledger();
+        self.forget();
+        Ok(self)
+    }
+
+    /// Parts of the stored energy, in the order of curves and tables.
+    pub fn parts(&self) -> &RodParts {
+        &self.parts
     }
 
     /// Pairs of vertices in reach.
@@ -321,6 +331,9 @@ impl RodModel {
         }
         for &(i, v) in &self.held_vertices {
             (rate[i], rate[n + i], rate[2 * n + i]) = (v.x, v.y, v.z);
+        }
+        if self.has_own_terms && self.centreline.is_floating() {
+            remove_mean(rate, n);
         }
         self.centreline
             .prepare(state, &self.pairs, self.friction)

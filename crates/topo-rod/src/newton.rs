@@ -19,6 +19,8 @@ pub(crate) struct NewtonMatrix {
     driven: Vec<(usize, usize, Matrix3<f64>)>,
     fixed: Vec<bool>,
     floating: bool,
+    /// Whether a term may hold the rod as a whole.
+    is_tethered: bool,
     chain: Chain,
     work: Vec<f64>,
     right: Vec<f64>,
@@ -34,6 +36,12 @@ impl NewtonMatrix {
             floating,
             ..Self::default()
         }
+    }
+
+    /// Grounds a floating rod by a trace only, for terms that may hold it as a whole: with their stiffness in the matrix a firm ground
+    /// would be a spring at one vertex, and without it a trace is enough.
+    pub(crate) fn loosen_ground(&mut self) {
+        self.is_tethered = true;
     }
 
     pub(crate) fn n_nonzeros(&self) -> usize {
@@ -114,7 +122,9 @@ impl NewtonMatrix {
             add(j, (j, j), identity(c), true);
             add(3 * n + place, (i, j), identity(-c), false);
         }
-        hold(values, &self.blocks, &self.fixed, self.floating, viscous);
+        // a rod that its own terms may hold as a whole is grounded just enough to be solved for
+        let ground = if self.is_tethered { LOOSE_GROUND * viscous } else { viscous };
+        hold(values, &self.blocks, &self.fixed, self.floating, ground);
         self.n_factorisations += 1;
         solver.factor()
     }
@@ -227,6 +237,9 @@ fn hold(values: &mut [f64], blocks: &[[usize; 9]], fixed: &[bool], floating: boo
         }
     }
 }
+
+/// Ground of a rod that may be held as a whole, over its viscosity.
+const LOOSE_GROUND: f64 = 1e-9;
 
 /// Adds c (u_a − u_b)² as a matrix: component-major in, vertex-major out.
 #[inline]

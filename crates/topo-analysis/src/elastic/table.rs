@@ -1,5 +1,6 @@
 //! Rows of the elastic tables.
 
+use crate::further::Further;
 use crate::warnings::Warnings;
 use serde::{Deserialize, Serialize};
 
@@ -53,6 +54,9 @@ pub struct SweepRow {
     pub twist_energy: f64,
     /// Its stretch part.
     pub stretch: f64,
+    /// Energies of further terms after charging, a column of its name each; not read back from tables.
+    #[serde(default, skip_serializing_if = "Further::is_empty")]
+    pub further: Further,
     /// Elastic energy that the image of an amphichiral knot which was not kept has after charging; empty where only one was
     /// charged, and in tables written before there was this column.
     #[serde(default)]

@@ -10,7 +10,7 @@ use topo_rod::{Accuracy, CutSite, Ends, Reading, cut_circle_time};
 
 use super::case::ElasticCase;
 use super::job::CaseJob;
-use super::run::{ELASTIC, charge};
+use super::run::charge;
 use super::scene::ElasticScene;
 use crate::LabError;
 use crate::knots::Shapes;
@@ -119,7 +119,8 @@ pub(crate) fn measured_discharge(
     let last = charged.record().samples.last();
     let energy = last.map_or(f64::NAN, |s| s.elastic());
     let run = job.discharge(&charged, site, &job.scene.discharge, interrupt)?;
-    let times = DischargeTimes::of(&run.record.curve, &ELASTIC, run.start, &ELASTIC_SHARES);
+    let parts = run.record.parts.elastic();
+    let times = DischargeTimes::of(&run.record.curve, &parts, run.start, &ELASTIC_SHARES);
     let at = |share| times.at(share).map(|t| t.value);
     Ok(MeasuredDischarge {
         cut: run.at,
@@ -141,7 +142,8 @@ pub(crate) fn exact_discharge(
     cut: f64,
 ) -> Option<MeasuredDischarge> {
     let is_twisted = case.rod.twist.is_some_and(|twist| twist != 0.0);
-    if !entry.is_unknot() || is_twisted || scene.discharge.ends != Ends::default() {
+    let has_more = !scene.own_terms.is_empty() || scene.discharge.ends != Ends::default();
+    if !entry.is_unknot() || is_twisted || has_more {
         return None;
     }
     let length = match case.rod.reading {

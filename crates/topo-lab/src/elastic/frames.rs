@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use topo_core::Interrupt;
 use topo_knots::KnotTable;
-use topo_rod::{CutSite, DischargeSettings, energy_density};
+use topo_rod::{CutSite, DischargeSettings};
 
 use super::job::CaseJob;
 use super::run::charge;
@@ -62,7 +62,7 @@ pub fn discharge_frames(
     let site = CutSite::MaximumEnergyDensity;
     let run = job.discharge(&charged, site, &settings, interrupt)?;
     frames.extend(run.record.samples.iter().map(|s| {
-        let density = energy_density(&case.rod, &s.state);
+        let density = charged.battery().energy_density(&s.state);
         ShapeFrame {
             time: Some(s.time),
             vertices: s.state.vertices().to_vec(),

@@ -24,6 +24,9 @@ pub(crate) fn fingerprint(scene: &ElasticScene, case: &ElasticCase, entry: &Knot
     if let Some(cuts) = &scene.fixed_cuts {
         all["fixed_cuts"] = json!(cuts.get(&case.state()));
     }
+    if !scene.own_terms.is_empty() {
+        all["own_terms"] = json!(scene.own_terms);
+    }
     identity(&all)
 }
 
@@ -33,7 +36,7 @@ pub(super) fn settings_of(scene: &ElasticScene, case: &ElasticCase) -> serde_jso
         .fixed_cuts
         .as_ref()
         .map(|cuts| cuts.get(&case.state()));
-    json!([
+    let mut all = json!([
         scene.tighten,
         scene.charge,
         scene.cuts,
@@ -41,7 +44,11 @@ pub(super) fn settings_of(scene: &ElasticScene, case: &ElasticCase) -> serde_jso
         scene.timeline,
         scene.accuracy,
         fixed
-    ])
+    ]);
+    if let (Some(all), false) = (all.as_array_mut(), scene.own_terms.is_empty()) {
+        all.push(json!(scene.own_terms));
+    }
+    all
 }
 
 /// Whether a twisted rod may start from the tight curve or from its mirror image, being the same knot.

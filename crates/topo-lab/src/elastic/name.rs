@@ -5,6 +5,7 @@ use topo_rod::{FrictionRange, RodParameters};
 
 use super::case::ElasticCase;
 use super::identity::settings_of;
+use super::own_term::OwnTerm;
 use super::scene::{ElasticScene, OwnKnots};
 use crate::preset::Preset;
 use crate::sweep::{CaseName, Row, value};
@@ -38,7 +39,10 @@ impl ElasticScene {
             n_edges: rod.n_edges,
             ..usual.rod.clone()
         };
-        name.changes(&value(rod), &value(&said), &[])
+        let name = name.changes(&value(rod), &value(&said), &[]);
+        let labels = self.own_terms.iter().map(OwnTerm::label);
+        labels
+            .fold(name, |name, label| name.word(label))
             .changes(
                 &json!({"imperfection": case.imperfection, "seed": case.seed}),
                 &json!({"imperfection": usual.imperfection, "seed": usual.seed}),
@@ -84,7 +88,11 @@ impl ElasticScene {
             own_knots: own_knots.as_deref().map(OwnKnots::at),
             ..self.clone()
         };
-        scene.text()
+        let labels = self.own_terms.iter().map(OwnTerm::label);
+        let text = labels.map(|label| {
+            format!("# with the energy term {label} of a program, which this file cannot say\n")
+        });
+        text.chain([scene.text()]).collect()
     }
 }
 

@@ -2,13 +2,13 @@
 
 use serde::Serialize;
 use serde_json::json;
-use topo_rod::{ChargedRod, Guards, RodParameters, RodSample, energy_density};
+use topo_rod::{ChargedRod, Guards, RodBattery, RodSample};
 
 use super::job::{CaseJob, FollowedCut};
 use crate::LabError;
 use crate::folder::Outcome;
 use crate::sweep::{About, Place, value};
-use topo_analysis::{SweepRow, Timeline};
+use topo_analysis::{Further, SweepRow, Timeline};
 
 /// Everything that a case has made.
 #[derive(Clone, Copy)]
@@ -54,6 +54,8 @@ struct SeriesRow<'a> {
     twist_energy: f64,
     stretch: f64,
     contact_energy: f64,
+    #[serde(skip_serializing_if = "Further::is_empty")]
+    further: Further,
     dissipated_viscosity: f64,
     dissipated_twist: f64,
     dissipated_friction: f64,
@@ -77,10 +79,11 @@ fn series_row<'a>(
         cut,
         time: s.time,
         energy: s.elastic(),
-        bend: s.stored[0],
-        twist_energy: s.stored[1],
-        stretch: s.stored[2],
-        contact_energy: s.stored[3],
+        bend: s.stored.of("bend"),
+        twist_energy: s.stored.of("twist"),
+        stretch: s.stored.of("stretch"),
+        contact_energy: s.stored.of("contact"),
+        further: s.stored.further().collect(),
         dissipated_viscosity: s.dissipated[0],
         dissipated_twist: s.dissipated[1],
         dissipated_friction: s.dissipated[2],
@@ -127,10 +130,9 @@ pub(super) fn write_case(made: &MadeCase<'_>, place: &Place<'_>) -> Result<(), L
     folder.table("charge.csv", &series)?;
     let series: Vec<_> = runs.iter().flat_map(run_series).collect();
     folder.table("series.csv", &series)?;
-    let rod = &made.job.case.rod;
     let snapshots: Vec<_> = runs
         .iter()
-        .flat_map(|run| run_snapshots(rod, run))
+        .flat_map(|run| run_snapshots(charged.battery(), run))
         .collect();
     folder.table("snapshots.csv", &snapshots)?;
     let mut run = folder.about(outcome, about(made)?);
@@ -166,13 +168,13 @@ fn run_series(run: &FollowedCut) -> impl Iterator<Item = SeriesRow<'_>> {
     samples.map(move |(k, s)| series_row(Some(discharge.at), s, Some((timeline, k))))
 }
 
-fn run_snapshots(rod: &RodParameters, run: &FollowedCut) -> Vec<SnapshotVertex> {
+fn run_snapshots(battery: &RodBattery, run: &FollowedCut) -> Vec<SnapshotVertex> {
     let discharge = &run.discharge;
     let samples = &discharge.record.samples;
     let mut snapshots = Vec::new();
     for k in snapshot_indices(samples, discharge.start) {
         let state = &samples[k].state;
-        let density = energy_density(rod, state);
+        let density = battery.energy_density(state);
         snapshots.extend(
             state
                 .vertices()

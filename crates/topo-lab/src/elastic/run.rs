@@ -15,9 +15,6 @@ use crate::folder::Outcome;
 use crate::sweep::Place;
 use topo_analysis::{DischargeTimes, ELASTIC_SHARES, SweepRow, Timeline, Warning, Warnings};
 
-/// Elastic parts of the energy, without contact.
-pub(crate) const ELASTIC: [&str; 3] = ["bend", "twist", "stretch"];
-
 /// A charged case.
 #[derive(Debug)]
 pub(crate) struct ChargedCase {
@@ -50,6 +47,9 @@ pub(crate) fn charge(job: &CaseJob<'_>, interrupt: &Interrupt) -> Result<Charged
     let centreline = tight.centreline()?;
     let battery = RodBattery::new(&case.rod, &scene.accuracy, Guards::default(), &centreline);
     let mut battery = battery.map_err(refuse)?;
+    for term in &scene.own_terms {
+        battery = term.added_to(battery).map_err(refuse)?;
+    }
     if case.imperfection > 0.0 {
         let start = battery.centreline();
         let size = case.imperfection * start.length() / battery.tube().start_length;
@@ -181,8 +181,8 @@ fn follow(
         return Ok(None);
     }
     let timeline = timeline(job, &discharge)?;
-    let released =
-        |of: f64| DischargeTimes::of(&discharge.record.curve, &ELASTIC, of, &ELASTIC_SHARES);
+    let (curve, parts) = (&discharge.record.curve, discharge.record.parts.elastic());
+    let released = |of: f64| DischargeTimes::of(curve, &parts, of, &ELASTIC_SHARES);
     Ok(Some(FollowedCut {
         times: released(discharge.start),
         times_after_cut: released(discharge.after_cut),
@@ -255,7 +255,10 @@ fn charged_row(job: &CaseJob<'_>, charged: &ChargedRod) -> SweepRow {
     };
     if let Some(last) = record.samples.last() {
         row.energy = last.elastic();
-        [row.bend, row.twist_energy, row.stretch, _] = last.stored;
+        row.bend = last.stored.of("bend");
+        row.twist_energy = last.stored.of("twist");
+        row.stretch = last.stored.of("stretch");
+        row.further = last.stored.further().collect();
         (row.writhe, row.total_twist) = (last.writhe, last.total_twist);
     }
     phase_warnings("charge", report, &mut row.warnings);
@@ -315,6 +318,7 @@ mod tests {
     use super::*;
     use crate::{ElasticScene, Preset};
     use topo_knots::{TightenSettings, tighten_entry};
+    use topo_rod::energy::RodParts;
 
     /// The two images of the tight 6_3 are two curves: either one alone stores energies that depend on the sign of the twist, by the
     /// 2.4e-3 that the finest runs give at 80 edges too. The one that stores less is kept and the other one's energy reported.
@@ -359,13 +363,13 @@ mod tests {
     /// Half of 4 = 1 + 1 + 2 is gone when the stretch is, at 1 T_0; what contact holds does not count.
     #[test]
     fn val_released_shares_count_bend_twist_and_stretch() {
-        let parts = ["bend", "twist", "stretch", "contact"];
-        let mut curve = topo_core::DischargeCurve::new(parts, Vec::<String>::new());
+        let names = RodParts::default();
+        let mut curve = topo_core::DischargeCurve::new(names.names(), Vec::<String>::new());
         curve.push(0.0, &[1.0, 1.0, 2.0, 50.0], &[]).unwrap();
         curve.push(1.0, &[1.0, 1.0, 0.0, 40.0], &[]).unwrap();
         curve.push(2.0, &[0.0, 1.0, 0.0, 40.0], &[]).unwrap();
         curve.push(3.0, &[0.0, 0.0, 0.0, 40.0], &[]).unwrap();
-        let times = DischargeTimes::of(&curve, &ELASTIC, 4.0, &[0.5, 0.75]);
+        let times = DischargeTimes::of(&curve, &RodParts::default().elastic(), 4.0, &[0.5, 0.75]);
         assert_eq!(times.at(0.5).unwrap().value, 1.0);
         assert_eq!(times.at(0.75).unwrap().value, 2.0);
     }

@@ -5,12 +5,14 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 use topo_knots::{KnotTable, TightenSettings};
-use topo_rod::{Accuracy, ChargeSettings, DischargeSettings, RodParameters};
+use topo_rod::energy::EnergyTerm;
+use topo_rod::{Accuracy, ChargeSettings, DischargeSettings, RodParameters, RodState};
 
 use super::case::ElasticCase;
 use super::choices::Cuts;
 use super::defaults;
 use super::keys::{EDGES, ROD_KEYS};
+use super::own_term::OwnTerm;
 use crate::LabError;
 use crate::preset::Preset;
 use crate::scene::{Axis, Numbers, product};
@@ -58,6 +60,9 @@ pub struct ElasticScene {
     /// Places of the cuts by [`ElasticCase::state`], instead of `cuts`: those of another run.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fixed_cuts: Option<BTreeMap<String, Vec<f64>>>,
+    /// Energy terms of the caller's own, which no file can say.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub own_terms: Vec<OwnTerm>,
 }
 
 /// A folder of knot files that a scene names.
@@ -130,6 +135,7 @@ impl ElasticScene {
             tighten: preset.tighten(),
             wish: None,
             fixed_cuts: None,
+            own_terms: Vec::new(),
         }
     }
 
@@ -212,6 +218,23 @@ impl ElasticScene {
         }
         self.cuts = cuts;
         Ok(self)
+    }
+
+    /// The scene with one more energy term, of the caller's own, in all its cases; see [`RodBattery::with`](topo_rod::RodBattery::with).
+    ///
+    /// `label` is a word for the term and all its numbers, such as `trap0.01`: it tells cases, their folders and their identity apart,
+    /// so that a term with other numbers needs another label.
+    ///
+    /// # Validation
+    /// `law_a_term_from_outside_is_found_everywhere`
+    #[must_use]
+    pub fn with_term(
+        mut self,
+        label: &str,
+        make: impl Fn(&RodState) -> Box<dyn EnergyTerm> + Send + Sync + 'static,
+    ) -> Self {
+        self.own_terms.push(OwnTerm::new(label, make));
+        self
     }
 
     /// Where files with the scene's tables lie below an output folder.

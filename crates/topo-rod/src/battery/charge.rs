@@ -5,7 +5,7 @@ use topo_core::{Interrupt, Schedule, Scheduled, StopReason, positive};
 
 use super::record::{CurveRecorder, RunRecord, SampleRecorder, Scales};
 use super::{RodBattery, RodSimulation};
-use crate::{Ends, RodError, RodModel, RodState, energy_density};
+use crate::{Ends, RodError, RodState};
 
 /// How long a rod is charged and how often it is looked at.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -66,19 +66,14 @@ impl RodBattery {
     ) -> Result<ChargedRod, RodError> {
         settings.checked()?;
         let state = self.start.clone();
-        let mut model = RodModel::new(
-            &self.parameters,
-            &self.tube,
-            &self.accuracy,
-            self.guards,
-            Ends::default(),
-            &state,
-        )?;
+        let mut model = self.model(&state, Ends::default())?;
         model.start(&state)?;
         let scales = Scales::of(&state);
+        let parts = model.parts().clone();
         let mut simulation = RodSimulation::new(model, state, &self.accuracy, interrupt)?;
-        let mut curve = CurveRecorder::new(scales);
-        let mut samples = SampleRecorder::new(scales, self.tube, self.parameters.twist.is_some());
+        let mut curve = CurveRecorder::new(scales, &parts);
+        let has_twist = self.parameters.twist.is_some();
+        let mut samples = SampleRecorder::new(scales, self.tube, has_twist, &parts);
         let until = settings.duration * scales.time;
         let outputs = Schedule::log_spaced(
             settings.first_output * scales.time,
@@ -105,7 +100,7 @@ impl RodBattery {
             };
         }
         let record = RunRecord::new(&simulation, stop, curve, samples);
-        let density = energy_density(&self.parameters, simulation.state());
+        let density = self.energy_density(simulation.state());
         Ok(ChargedRod {
             battery: self.clone(),
             state: simulation.into_state(),

@@ -7,7 +7,7 @@ use super::RodSimulation;
 use super::cut::CutRod;
 use super::record::{CurveRecorder, RunRecord, SampleRecorder, Scales};
 use super::tips::tips_have_parted;
-use crate::{Ends, RodError, RodModel, RodState};
+use crate::{Ends, RodError, RodState};
 
 /// How far a discharge is followed and how often it is looked at.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -96,17 +96,10 @@ impl CutRod {
         let (parameters, tube) = (battery.parameters(), battery.tube());
         settings.checked(parameters.twist.is_some())?;
         let state = self.state.clone();
-        let mut model = RodModel::new(
-            parameters,
-            &tube,
-            battery.accuracy(),
-            battery.guards,
-            settings.ends,
-            &state,
-        )?;
+        let mut model = battery.model(&state, settings.ends)?;
         model.set_cyclic(true);
-        let elastic_of =
-            |books: &Ledger| books.stored_total() - books.stored_in("contact").unwrap_or(0.0);
+        let parts = model.parts().clone();
+        let elastic_of = |books: &Ledger| parts.elastic_of(books);
         let before = &self.charged.record().report.ledger;
         let (closed, start) = (before.stored_total(), elastic_of(before));
         model.start(&state)?;
@@ -117,8 +110,9 @@ impl CutRod {
         model.record_cut(closed, closed - opened);
         let window = model.pairs().window().outer();
         let mut simulation = RodSimulation::new(model, state, battery.accuracy(), interrupt)?;
-        let mut curve = CurveRecorder::new(scales);
-        let mut samples = SampleRecorder::new(scales, tube, parameters.twist.is_some());
+        let mut curve = CurveRecorder::new(scales, &parts);
+        let has_twist = parameters.twist.is_some();
+        let mut samples = SampleRecorder::new(scales, tube, has_twist, &parts);
         let outputs = Schedule::log_spaced(
             settings.first_output * scales.time,
             settings.outputs_per_decade,

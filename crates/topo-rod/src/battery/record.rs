@@ -6,19 +6,17 @@ use serde::Serialize;
 use topo_core::{Counters, DischargeCurve, Ledger, RejectionCounts, Sample, StopReason};
 
 use crate::contact::ContactPairs;
+use crate::energy::{RodParts, StoredEnergy};
 use crate::model::{CHANNELS, WorkAccount};
 use crate::{RodState, Tube};
-
-/// Terms of the energy as tables name them; a rod without one of them reports 0.
-pub(crate) const PARTS: [&str; 4] = ["bend", "twist", "stretch", "contact"];
 
 /// The rod at one output time.
 #[derive(Debug, Clone, Serialize)]
 pub struct RodSample {
     /// Time since the start of the phase, in T_0.
     pub time: f64,
-    /// Bend, twist, stretch and contact energy, in E_0.
-    pub stored: [f64; 4],
+    /// Bend, twist, stretch and contact energy, and those of further terms, in E_0.
+    pub stored: StoredEnergy,
     /// Dissipated so far by internal viscosity, twist viscosity and friction, in E_0.
     pub dissipated: [f64; 3],
     /// Work done on the rod so far, in E_0.
@@ -40,7 +38,7 @@ pub struct RodSample {
 impl RodSample {
     /// Elastic energy, contact left out, in E_0.
     pub fn elastic(&self) -> f64 {
-        self.stored[..3].iter().sum()
+        self.stored.elastic()
     }
 }
 
@@ -72,6 +70,8 @@ pub struct PhaseReport {
 /// What a phase leaves behind.
 #[derive(Debug, Clone, Serialize)]
 pub struct RunRecord {
+    /// Parts of the stored energy, in the order of curve and samples.
+    pub parts: RodParts,
     /// Energies at every accepted step: times in T_0, energies in E_0.
     pub curve: DischargeCurve,
     /// The rod at output times.
@@ -100,13 +100,18 @@ impl Scales {
 pub(crate) struct CurveRecorder {
     pub curve: DischargeCurve,
     scales: Scales,
+    parts: RodParts,
+    /// Of the step in hand, so that none allocates.
+    stored: Vec<f64>,
 }
 
 impl CurveRecorder {
-    pub(crate) fn new(scales: Scales) -> Self {
+    pub(crate) fn new(scales: Scales, parts: &RodParts) -> Self {
         Self {
-            curve: DischargeCurve::new(PARTS, CHANNELS),
+            curve: DischargeCurve::new(parts.names(), CHANNELS),
             scales,
+            parts: parts.clone(),
+            stored: Vec::with_capacity(parts.len()),
         }
     }
 
@@ -114,18 +119,28 @@ impl CurveRecorder {
         let time = sample.time / self.scales.time;
         // a run continued after a pause shows its last state again
         if self.curve.time().last().is_none_or(|last| time > *last) {
-            let (stored, dissipated) = books(sample.ledger, self.scales.energy);
-            if let Err(error) = self.curve.push(time, &stored, &dissipated) {
+            let (books, scale) = (sample.ledger, self.scales.energy);
+            self.stored.clear();
+            self.stored.extend(stored(&self.parts, books, scale));
+            let dissipated = dissipated(books, scale);
+            if let Err(error) = self.curve.push(time, &self.stored, &dissipated) {
                 tracing::warn!(%error, "a step is missing from the energy curve");
             }
         }
     }
 }
 
-fn books(ledger: &Ledger, scale: f64) -> ([f64; 4], [f64; 3]) {
-    let stored = PARTS.map(|name| ledger.stored_in(name).unwrap_or(0.0) / scale);
-    let dissipated = CHANNELS.map(|name| ledger.dissipated_by(name).unwrap_or(0.0) / scale);
-    (stored, dissipated)
+fn stored<'a>(
+    parts: &'a RodParts,
+    books: &'a Ledger,
+    scale: f64,
+) -> impl Iterator<Item = f64> + 'a {
+    let names = parts.names();
+    names.map(move |name| books.stored_in(name).unwrap_or(0.0) / scale)
+}
+
+fn dissipated(books: &Ledger, scale: f64) -> [f64; 3] {
+    CHANNELS.map(|name| books.dissipated_by(name).unwrap_or(0.0) / scale)
 }
 
 /// Observer at output times: the rod and what is measured on it.
@@ -136,10 +151,11 @@ pub(crate) struct SampleRecorder {
     scales: Scales,
     tube: Tube,
     has_twist: bool,
+    parts: RodParts,
 }
 
 impl SampleRecorder {
-    pub(crate) fn new(scales: Scales, tube: Tube, has_twist: bool) -> Self {
+    pub(crate) fn new(scales: Scales, tube: Tube, has_twist: bool, parts: &RodParts) -> Self {
         Self {
             samples: Vec::new(),
             link_drift: None,
@@ -147,6 +163,7 @@ impl SampleRecorder {
             scales,
             tube,
             has_twist,
+            parts: parts.clone(),
         }
     }
 
@@ -155,7 +172,8 @@ impl SampleRecorder {
         if self.samples.last().is_some_and(|last| last.time >= time) {
             return;
         }
-        let (stored, dissipated) = books(sample.ledger, self.scales.energy);
+        let (books, scale) = (sample.ledger, self.scales.energy);
+        let energies = stored(&self.parts, books, scale).collect();
         let (writhe, total_twist) = (state.writhe(), state.total_twist());
         if state.is_closed() && self.has_twist {
             let link = writhe + total_twist;
@@ -178,9 +196,9 @@ impl SampleRecorder {
             |p: &&crate::contact::ActivePair| p.strands && p.distance < self.tube.contact_diameter;
         self.samples.push(RodSample {
             time,
-            stored,
-            dissipated,
-            work: sample.ledger.work() / self.scales.energy,
+            stored: StoredEnergy::new(self.parts.clone(), energies),
+            dissipated: dissipated(books, scale),
+            work: books.work() / scale,
             writhe,
             total_twist,
             n_contacts: pairs.active().iter().filter(touching).count(),
@@ -214,6 +232,7 @@ impl RunRecord {
             link_drift: samples.link_drift,
         };
         Self {
+            parts: curve.parts,
             curve: curve.curve,
             samples: samples.samples,
             report,

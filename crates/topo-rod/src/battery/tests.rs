@@ -5,8 +5,9 @@ use std::f64::consts::{PI, TAU};
 use nalgebra::Vector3;
 use topo_core::Interrupt;
 
-use super::record::{PARTS, Scales};
+use super::record::Scales;
 use super::*;
+use crate::energy::StoredEnergy;
 use crate::{ChargeSettings, Reading, cut_candidates};
 
 /// A right-handed trefoil on a torus; of tube, the thinner the torus the less.
@@ -75,10 +76,11 @@ fn val_reported_units_of_fifty_radii() {
     let record = charged.record();
     let last = record.samples.last().unwrap();
     assert!((record.report.time - 0.02).abs() < 1e-12 && (last.time - 0.02).abs() < 1e-12);
-    assert_eq!(PARTS, ["bend", "twist", "stretch", "contact"]);
+    let names: Vec<&str> = record.parts.names().collect();
+    assert_eq!(names, ["bend", "twist", "stretch", "contact"]);
     // the books are per area in E_b h
-    for (part, stored) in PARTS.iter().zip(last.stored) {
-        let booked = record.report.ledger.stored_in(part).unwrap();
+    for (part, stored) in last.stored.by_part() {
+        let booked = record.report.ledger.stored_in(part.name).unwrap();
         assert!((stored * 50.0 / PI - booked).abs() <= 1e-12 * booked);
     }
     // α θ'²/8 a length at the start, most of it still there
@@ -89,7 +91,8 @@ fn val_reported_units_of_fifty_radii() {
     );
     // released shares count what bend, twist and stretch hold, not what strands in contact do
     let mut sample = last.clone();
-    sample.stored = [1.0, 2.0, 4.0, 8.0];
+    let energies = vec![1.0, 2.0, 4.0, 8.0];
+    sample.stored = StoredEnergy::new(record.parts.clone(), energies);
     assert_eq!(sample.elastic(), 7.0);
 }
 

@@ -76,6 +76,13 @@ impl EnergyTerm for Bend {
             stiffness.second[before] -= ab;
         }
     }
+
+    fn add_density(&self, at: At<'_>, density: &mut [f64]) {
+        let (l0, cosine) = (at.state.rest_length(), &at.geometry.cosine);
+        for i in at.state.interior() {
+            density[i] += (1.0 - cosine[i]) / (2.0 * l0 * l0 * (1.0 + cosine[i]));
+        }
+    }
 }
 
 /// Matrix of v ↦ a × v.

@@ -2,8 +2,9 @@
 
 use nalgebra::Vector3;
 
-use super::{At, EnergyTerm, Force, Stiffness};
+use super::{At, EnergyKind, EnergyTerm, Force, Stiffness};
 use crate::contact::ActivePair;
+use crate::{RodParameters, Tube};
 
 /// Penalty between vertices of different strands (and of a rod that collapses, see `contact::core`), weighted by their share of arclength and by the window W that leaves
 /// neighbours along the rod out.
@@ -22,6 +23,14 @@ pub struct ContactEnergy {
 }
 
 impl ContactEnergy {
+    /// That of the parameters; none without contact.
+    pub(crate) fn of(rod: &RodParameters, tube: &Tube) -> Option<Self> {
+        rod.contact.map(|contact| Self {
+            stiffness: contact.stiffness,
+            diameter: tube.contact_diameter,
+        })
+    }
+
     /// V and −dV/dr for the diameter `d`.
     #[inline]
     fn potential(&self, r: f64, d: f64) -> (f64, f64) {
@@ -62,6 +71,10 @@ impl ContactEnergy {
 impl EnergyTerm for ContactEnergy {
     fn name(&self) -> &'static str {
         "contact"
+    }
+
+    fn kind(&self) -> EnergyKind {
+        EnergyKind::Constraint
     }
 
     fn energy(&self, at: At<'_>) -> f64 {
@@ -117,4 +130,6 @@ impl EnergyTerm for ContactEnergy {
             stiffness.add_further(p.i, p.j, block);
         }
     }
+
+    fn add_density(&self, _at: At<'_>, _density: &mut [f64]) {}
 }

@@ -3,6 +3,7 @@
 use nalgebra::Matrix3;
 
 use super::{At, EnergyTerm, Force, Stiffness};
+use crate::RodParameters;
 
 /// Stretch with γ = E/E_b.
 ///
@@ -16,6 +17,15 @@ use super::{At, EnergyTerm, Force, Stiffness};
 pub struct Stretch {
     /// γ.
     pub ratio: f64,
+}
+
+impl Stretch {
+    /// That of the parameters.
+    pub(crate) fn of(rod: &RodParameters) -> Self {
+        Self {
+            ratio: rod.stretch_ratio,
+        }
+    }
 }
 
 impl EnergyTerm for Stretch {
@@ -58,6 +68,19 @@ impl EnergyTerm for Stretch {
             stiffness.diagonal[j] += block;
             stiffness.diagonal[state.edge_end(j)] += block;
             stiffness.next[j] -= block;
+        }
+    }
+
+    fn add_density(&self, at: At<'_>, density: &mut [f64]) {
+        let (state, l0) = (at.state, at.state.rest_length());
+        let of = |j: usize| 0.5 * self.ratio * (at.geometry.edge_length[j] / l0 - 1.0).powi(2);
+        let last = state.n_vertices() - 1;
+        for (i, w) in density.iter_mut().enumerate() {
+            *w += if state.interior().contains(&i) {
+                0.5 * (of(state.edge_before(i)) + of(i))
+            } else {
+                of(if i == last { last - 1 } else { 0 })
+            };
         }
     }
 }

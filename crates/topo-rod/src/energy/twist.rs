@@ -1,6 +1,7 @@
 //! Twist energy.
 
 use super::{At, EnergyTerm, Force, Stiffness};
+use crate::RodParameters;
 
 /// Twist, with stiffness α relative to bending.
 ///
@@ -19,6 +20,13 @@ pub struct Twist {
 }
 
 impl Twist {
+    /// That of the parameters; none without twist.
+    pub(crate) fn of(rod: &RodParameters) -> Option<Self> {
+        rod.twist.map(|_| Self {
+            ratio: rod.twist_ratio,
+        })
+    }
+
     /// Torque τ_i = ∂e/∂m_i carried by a vertex with integrated twist `m`.
     #[inline]
     pub fn torque(&self, m: f64, rest_length: f64) -> f64 {
@@ -54,4 +62,11 @@ impl EnergyTerm for Twist {
     }
 
     fn add_stiffness(&self, _at: At<'_>, _stiffness: &mut Stiffness) {}
+
+    fn add_density(&self, at: At<'_>, density: &mut [f64]) {
+        let (l0, m) = (at.state.rest_length(), at.state.twists());
+        for i in at.state.interior() {
+            density[i] += self.ratio * m[i] * m[i] / (8.0 * l0 * l0);
+        }
+    }
 }

@@ -60,8 +60,7 @@ impl RodModel {
     /// Books the energy that a cut took before this run started: the account then starts at what the closed rod held.
     pub(crate) fn record_cut(&mut self, closed: f64, removed: f64) {
         let open = self.at.energies.clone();
-        let names: Vec<&'static str> = self.terms.iter().map(|t| t.name()).collect();
-        let mut ledger = Ledger::new(&names, &CHANNELS);
+        let mut ledger = self.empty_ledger();
         let mut before = open.clone();
         if let Some(first) = before.first_mut() {
             *first += closed - open.iter().sum::<f64>();
@@ -70,6 +69,12 @@ impl RodModel {
         ledger.record_event("cut", 0.0, removed);
         ledger.set_stored(&open);
         self.ledger = ledger;
+    }
+
+    /// Books of all terms, with nothing in them.
+    pub(super) fn empty_ledger(&self) -> Ledger {
+        let names: Vec<&'static str> = self.terms.iter().map(|t| t.name()).collect();
+        Ledger::new(&names, &CHANNELS)
     }
 
     /// Energy books of the run.

@@ -1,0 +1,69 @@
+//! Which terms a rod has: the list of this crate, and terms of the caller's own.
+
+use std::fmt;
+use std::sync::Arc;
+
+use super::{Bend, ContactEnergy, EnergyTerm, RodParts, Stretch, Twist};
+use crate::model::CHANNELS;
+use crate::{RodError, RodParameters, RodState, Tube};
+
+/// The terms that the parameters name, in the order in which their energies are summed. A further term is a line here.
+pub(crate) fn terms_of(rod: &RodParameters, tube: &Tube) -> Vec<Box<dyn EnergyTerm>> {
+    fn listed<T: EnergyTerm + 'static>(term: Option<T>) -> Option<Box<dyn EnergyTerm>> {
+        term.map(|term| Box::new(term) as Box<dyn EnergyTerm>)
+    }
+    let terms = [
+        listed(Some(Bend)),
+        listed(Some(Stretch::of(rod))),
+        listed(Twist::of(rod)),
+        listed(ContactEnergy::of(rod, tube)),
+    ];
+    terms.into_iter().flatten().collect()
+}
+
+/// Checks the name of a term of the caller's own that is added to `terms`.
+///
+/// # Errors
+/// A name that is no column of a table, or that another part of the energy account has.
+pub(crate) fn checked_name(
+    term: &dyn EnergyTerm,
+    terms: &[Box<dyn EnergyTerm>],
+) -> Result<(), RodError> {
+    let name = term.name();
+    let wrong = |reason| Err(RodError::Term { name, reason });
+    let is_plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
+    if !name.starts_with(|c: char| c.is_ascii_lowercase()) || !name.chars().all(is_plain) {
+        return wrong("use lower case letters, digits and _, as tables do");
+    }
+    let parts = RodParts::of(terms);
+    if parts.names().chain(CHANNELS).any(|taken| taken == name) {
+        return wrong("another part of the energy account has that name");
+    }
+    Ok(())
+}
+
+/// How a term of the caller's own is made for the state from which a phase of a battery starts.
+///
+/// Cloned and shared between threads with the battery that has it.
+#[derive(Clone)]
+pub struct TermFactory(Arc<Make>);
+
+type Make = dyn Fn(&RodState) -> Box<dyn EnergyTerm> + Send + Sync;
+
+impl TermFactory {
+    /// A factory that calls `make`.
+    pub fn new(make: impl Fn(&RodState) -> Box<dyn EnergyTerm> + Send + Sync + 'static) -> Self {
+        Self(Arc::new(make))
+    }
+
+    /// The term for a phase that starts from `state`.
+    pub fn make(&self, state: &RodState) -> Box<dyn EnergyTerm> {
+        (self.0)(state)
+    }
+}
+
+impl fmt::Debug for TermFactory {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("TermFactory")
+    }
+}
