@@ -13,7 +13,9 @@ import pytest
 import topobatteries as topo
 from conftest import QUICK, ROOT, SMALL
 
-KNOTS = ["3_1", "4_1", "5_1", "5_2", "6_1", "6_2", "6_3", "7_1", "7_2", "7_3", "7_4", "7_5", "7_6", "7_7"]
+FEW = ["3_1", "m3_1"]
+ALL = ["3_1", "4_1", "5_1", "5_2", "6_1", "6_2", "6_3", "7_1", "7_2", "7_3", "7_4", "7_5", "7_6", "7_7"]
+LONG = pytest.mark.skipif("TOPO_LONG" not in os.environ, reason="long: cargo xtask test --long")
 
 
 def test_tables_series_and_shapes(quick):
@@ -38,15 +40,16 @@ def test_a_colloids_rings_and_slices(small):
     assert len(np.unique(small.slices(1)["x"])) > 10
 
 
-def test_fourteen_knots_are_those_of_the_program_to_the_byte(program, tmp_path):
-    scene = {**QUICK, "rod": {**QUICK["rod"], "knot": KNOTS}}
-    (tmp_path / "fourteen.toml").write_text(topo._topo.scene_text(scene), encoding="utf-8")
-    said = program("run", tmp_path / "fourteen.toml", "--out", tmp_path / "a")
+@pytest.mark.parametrize("knots", [FEW, pytest.param(ALL, marks=LONG)], ids=["few", "fourteen"])
+def test_knots_are_those_of_the_program_to_the_byte(knots, program, tmp_path):
+    scene = {**QUICK, "rod": {**QUICK["rod"], "knot": knots}}
+    (tmp_path / "tied.toml").write_text(topo._topo.scene_text(scene), encoding="utf-8")
+    said = program("run", tmp_path / "tied.toml", "--out", tmp_path / "a")
     assert said.returncode == 0, said.stderr
     shutil.copytree(tmp_path / "a/knots", tmp_path / "b/knots")
-    topo.run(tmp_path / "fourteen.toml", out=tmp_path / "b", progress=False)
-    result = topo.load(tmp_path / "b/fourteen")
-    assert sorted(result.columns["knot"]) == sorted(KNOTS)
+    topo.run(tmp_path / "tied.toml", out=tmp_path / "b", progress=False)
+    result = topo.load(tmp_path / "b/tied")
+    assert sorted(result.columns["knot"]) == sorted(knots)
     compared = program("compare", tmp_path / "a", tmp_path / "b")
     assert compared.returncode == 0, compared.stdout
 
@@ -96,13 +99,13 @@ def test_an_exception_of_the_callers_stops_the_run(tmp_path):
 
 SLOW = """
 import sys, topobatteries as topo
-scene = {"rod": {"knot": "0_1", "twist": {"from": 0.1, "to": 2.0, "n": 40}, "contact": {}}, "accuracy": {"edges": 200}}
+scene = {"rod": {"knot": "3_1", "twist": {"from": 0.1, "to": 2.0, "n": 40}, "contact": {}}, "accuracy": {"edges": 60}}
 def told(event):
     if event.kind == "case" and event.done == 2:
         print("now", flush=True)
 topo.run(scene, out=sys.argv[1], name="slow", jobs=1, progress=told)
 """
-LONG = """
+HELD = """
 import topobatteries as topo
 battery = topo.Rod(topo.Knot("0_1").tight(), twist=2.0, edges=2000, tolerance=1e-7)
 print("now", flush=True)
@@ -111,7 +114,7 @@ battery.charge(duration=1000)
 
 
 @pytest.mark.skipif(os.name != "posix", reason="signals are sent as POSIX has them")
-@pytest.mark.parametrize("script", [SLOW, LONG], ids=["scene", "object"])
+@pytest.mark.parametrize("script", [SLOW, HELD], ids=["scene", "object"])
 def test_ctrl_c_stops_at_once_and_keeps_what_is_done(script, tmp_path):
     process = subprocess.Popen(
         [sys.executable, "-c", script, str(tmp_path)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True

@@ -30,7 +30,7 @@ pub enum Tested {
 }
 
 /// Builds the wheel, installs it below `target`, and runs its tests there; `program` is what they compare its results with.
-pub fn test(target: &Path, program: &Path) -> Result<Tested, CliError> {
+pub fn test(target: &Path, program: &Path, long: bool) -> Result<Tested, CliError> {
     let Some(python) = find(NEEDED) else {
         let n = n_tests(&workspace().join(CRATE).join("tests"))?;
         return Ok(Tested::Skipped(
@@ -84,6 +84,9 @@ pub fn test(target: &Path, program: &Path) -> Result<Tested, CliError> {
     ]);
     tests.env("PYTHONPATH", &site).env("TOPO_PROGRAM", program);
     tests.env("PYTHONDONTWRITEBYTECODE", "1");
+    if long {
+        tests.env("TOPO_LONG", "1");
+    }
     let ok = step("tests of the Python package", tests, |line| {
         counts.add_pytest(line)
     })?;

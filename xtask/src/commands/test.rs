@@ -151,7 +151,7 @@ pub fn all(long: bool) -> Result<Report, CliError> {
         report.ok &= went;
     }
     let program = std::env::current_exe().unwrap_or_default();
-    match python::test(&target(), &program)? {
+    match python::test(&target(), &program, long)? {
         Tested::Ran(counts, ok) => {
             report.counts.add_all(counts);
             report.ok &= ok;

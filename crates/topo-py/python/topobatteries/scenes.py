@@ -102,7 +102,7 @@ def load(folder: str | os.PathLike) -> Result:
         columns = table.read(folder / "failed.csv")
         failed = dict(zip(columns["case"], columns["reason"]))
     result = Result(folder, [], failed)
-    result.warnings = [w for cell in result.columns["warnings"] for w in str(cell).split(";") if w]
+    result.warnings = [w for cell in result.columns.get("warnings", []) for w in str(cell).split(";") if w]
     return result
 
 
