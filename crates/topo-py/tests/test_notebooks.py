@@ -16,6 +16,6 @@ def test_notebooks_run(path, tmp_path):
         pytest.importorskip("dask")
     notebook = nbformat.read(path, as_version=4)
     assert not any(cell.get("outputs") for cell in notebook.cells), "notebooks are kept without outputs"
-    client.NotebookClient(notebook, timeout=120, resources={"metadata": {"path": str(tmp_path)}}).execute()
+    client.NotebookClient(notebook, timeout=300, startup_timeout=300, resources={"metadata": {"path": str(tmp_path)}}).execute()
     said = [out for cell in notebook.cells for out in cell.get("outputs", [])]
     assert said and not any(out.output_type == "error" for out in said)
