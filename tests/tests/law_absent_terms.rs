@@ -240,7 +240,10 @@ fn law_nematic_terms_of_strength_zero_change_nothing() {
     assert_eq!(bits(&with.record.curve), bits(&without.record.curve));
     assert_eq!(with.state, without.state);
     let report = with.record.report;
-    assert_eq!((report.n_second_passes, report.bytes.second), (0, 0));
+    assert_eq!(
+        (report.own.n_second_passes, report.own.bytes.second),
+        (0, 0)
+    );
     let weak = NematicParameters {
         field: Some(ExternalField {
             vector: [0.0, 0.0, 0.1],

@@ -101,7 +101,7 @@ fn check(row: &NematicRow, scene: &NematicScene, case: usize) {
     assert_eq!(row.steps, report.n_steps);
     let evaluations = charged.report().n_steps + report.counters.n_rate_evaluations;
     assert_eq!(row.evaluations, evaluations);
-    let flow = report.flow.map(|f| f.counters).unwrap_or_default();
+    let flow = report.own.flow.map(|f| f.counters).unwrap_or_default();
     let counts = (row.stokes_updates, row.stokes_iterations);
     assert_eq!(counts, (flow.n_updates, flow.n_boundary_solves));
     assert_eq!(flow.n_updates > 0, case.flow.is_some());

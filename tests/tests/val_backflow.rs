@@ -178,7 +178,7 @@ fn decay_on(mode: Mode, n: usize, tilt: f64, tolerance: f64, flow: bool) -> Deca
         error: rate / unit / mode.exact(&material, flow) - 1.0,
         n_steps: report.n_steps,
         mean_step: (to - from) / between.count() as f64,
-        n_updates: report.flow.map_or(0, |f| f.counters.n_updates),
+        n_updates: report.own.flow.map_or(0, |f| f.counters.n_updates),
         ledger_residual: report.ledger_residual,
     }
 }

@@ -263,7 +263,7 @@ fn law_units_scale_out_of_a_discharge_with_flow() {
         let unit = e * l * l * l;
         let ledger = &run.record.report.ledger;
         let energies = [run.start, ledger.dissipated(0), ledger.dissipated(1)].map(|f| f / unit);
-        let speed = run.record.report.flow.unwrap().max_speed / (e * g * l);
+        let speed = run.record.report.own.flow.unwrap().max_speed / (e * g * l);
         let residual = run.record.report.ledger_residual;
         assert!(residual < 3e-3, "residual {residual}");
         [&times[..], &energies, &[speed]].concat()

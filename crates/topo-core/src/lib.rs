@@ -1,9 +1,9 @@
 //! Shared ground of the topological batteries: units, curve geometry, integrators, step control, ledger, observers, checkpoints.
 //!
 //! Reading order: `curve` (what is deformed), `integrate` (what a model offers and how it is advanced), `control` and
-//! `simulation` (the loop that ends for certain), `ledger` and `observe` (what is known of a run), `discharge` (what a battery
-//! yields), `file`, `checkpoint` and `snapshot` (what stays on disk), `check` (validators, and the
-//! finite differences that every energy is tested with).
+//! `simulation` (the loop that ends for certain), `ledger` and `observe` (what is known of a run), `hooks` (what a caller hangs into
+//! it), `discharge` and `phase` (what a battery yields), `file`, `checkpoint` and `snapshot` (what stays on disk), `check` (validators,
+//! and the finite differences that every energy is tested with).
 //!
 //! Everything here is free of units, but for `units`: a rod's radius, bending modulus and viscosity are 1, and SI values enter and
 //! leave through [`RodUnits`].
@@ -16,10 +16,12 @@ mod curve;
 mod discharge;
 mod error;
 mod file;
+mod hooks;
 mod integrate;
 mod ledger;
 mod minimum;
 mod observe;
+mod phase;
 mod simulation;
 mod snapshot;
 mod units;
@@ -37,6 +39,7 @@ pub use curve::{
 pub use discharge::{DischargeCurve, DischargeError};
 pub use error::CurveError;
 pub use file::{FileError, write_atomic, write_atomic_bytes};
+pub use hooks::{MOST_COUNTED, Phase, Progress, RunHooks};
 pub use integrate::{
     Counters, Fire, ForceFn, GAMMA_L_STABLE_LARGE, GAMMA_L_STABLE_SMALL, LinearlyImplicit, Model,
     Relaxation, RelaxationEnd, Relaxed, Rkc2, Rkc2Stage, Rkc2Stages, RosenbrockW, SpectralBound,
@@ -45,6 +48,7 @@ pub use integrate::{
 pub use ledger::{CompensatedSum, EnergyEvent, Ledger};
 pub use minimum::MinimumState;
 pub use observe::{Observer, Sample, Schedule, Scheduled};
+pub use phase::{PhaseExtension, PhaseReport, RunRecord};
 pub use simulation::{Interrupt, Simulation, StopCondition, StopReason};
 pub use snapshot::Snapshot;
 pub use units::{

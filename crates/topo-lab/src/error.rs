@@ -139,10 +139,27 @@ impl LabError {
     /// Whether a case is refused for what it is, so that others can go on.
     pub(crate) fn is_of_one_case(&self) -> bool {
         match self {
-            Self::Case { .. } | Self::Rod { .. } | Self::Knot(_) | Self::Shape { .. } => true,
+            Self::Case { .. } | Self::Knot(_) | Self::Shape { .. } => true,
             Self::Analysis(source) => matches!(source, topo_analysis::AnalysisError::Knot(_)),
-            Self::Nematic { source, .. } => !matches!(source, topo_nematic::NematicError::File(_)),
+            Self::Rod { .. } | Self::Nematic { .. } => self.file().is_none(),
             _ => false,
+        }
+    }
+
+    /// Whether a checkpoint that cannot be used is the reason.
+    pub(crate) fn is_unusable_checkpoint(&self) -> bool {
+        self.file()
+            .is_some_and(topo_core::FileError::is_unusable_checkpoint)
+    }
+
+    /// What was wrong with a file of a battery.
+    fn file(&self) -> Option<&topo_core::FileError> {
+        match self {
+            Self::Nematic {
+                source: topo_nematic::NematicError::File(error),
+                ..
+            } => Some(error),
+            _ => None,
         }
     }
 }

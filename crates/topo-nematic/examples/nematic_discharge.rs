@@ -78,7 +78,7 @@ fn charge_from(battery: &NematicBattery, seed: f64) -> Result<ChargedNematic, Ne
     let clock = Instant::now();
     let mut show = |p: &Progress| {
         if std::env::var_os("TOPO_VERBOSE").is_some() {
-            println!("  step {:5}  rms H {:.2e}", p.step, p.rms_field);
+            println!("  {p}");
         }
     };
     let mut hooks = RunHooks::new(&interrupt).with_progress(&mut show);
@@ -111,13 +111,13 @@ fn print_run(run: &Discharge, clock: Instant) {
         report.stop,
         clock.elapsed().as_secs_f64()
     );
-    if let Some(flow) = report.flow {
+    if let Some(flow) = report.own.flow {
         println!(
             "flow:       {} updates, {:?}, largest speed {:.2e}",
             flow.counters.n_updates, flow.counters, flow.max_speed
         );
     }
-    println!("bytes:      {:?}", report.bytes);
+    println!("bytes:      {:?}", report.own.bytes);
 }
 
 /// Times at which shares of the energy are released, in the diffusion time.

@@ -119,10 +119,4 @@ pub enum NematicError {
     /// A checkpoint could not be written or read.
     #[error(transparent)]
     File(#[from] FileError),
-    /// A checkpoint belongs to another case.
-    #[error("the checkpoint {path} belongs to another case: remove it or use another folder")]
-    ForeignCheckpoint {
-        /// The file.
-        path: String,
-    },
 }

@@ -37,11 +37,11 @@ pub use battery::NematicBattery;
 pub use battery::charge::ChargedNematic;
 pub use battery::charge_settings::ChargeSettings;
 pub use battery::discharge::{Discharge, DischargeSettings};
-pub use battery::hooks::{Phase, Progress, RunHooks};
+pub use battery::hooks::RunHooks;
 pub use battery::minimum::MinimumReport;
 pub use battery::record::{
-    ChargeReport, ChargeStop, FinalSource, FinalState, FlowReport, NematicSample, PhaseReport,
-    RunRecord,
+    ChargeReport, ChargeStop, FinalSource, FinalState, FlowReport, NematicPhase, NematicSample,
+    PhaseReport, RunRecord,
 };
 pub use battery::switch::{SwitchSettings, SwitchTarget, SwitchedNematic};
 pub use boundary::{Boundary, FreeSurface};
@@ -68,4 +68,4 @@ pub use tensor::{
     N_COMPONENTS, Tensor5, contract, largest_eigenvalue, matrix, order_and_director,
     square_traceless, uniaxial,
 };
-pub use topo_core::MinimumState;
+pub use topo_core::{MinimumState, Phase, Progress};

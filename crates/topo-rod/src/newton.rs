@@ -123,7 +123,11 @@ impl NewtonMatrix {
             add(3 * n + place, (i, j), identity(-c), false);
         }
         // a rod that its own terms may hold as a whole is grounded just enough to be solved for
-        let ground = if self.is_tethered { LOOSE_GROUND * viscous } else { viscous };
+        let ground = if self.is_tethered {
+            LOOSE_GROUND * viscous
+        } else {
+            viscous
+        };
         hold(values, &self.blocks, &self.fixed, self.floating, ground);
         self.n_factorisations += 1;
         solver.factor()

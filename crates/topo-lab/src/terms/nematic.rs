@@ -53,7 +53,12 @@ pub(super) fn terms(preset: Preset) -> Vec<Term> {
         "flow",
         "every step",
         |c| c.discharge.flow = Some(FlowParameters::default()),
-        |r| (r.bytes.flow, r.flow.map_or(0, |f| f.counters.n_updates)),
+        |r| {
+            (
+                r.own.bytes.flow,
+                r.own.flow.map_or(0, |f| f.counters.n_updates),
+            )
+        },
     );
     add(
         "second elastic constant",
@@ -64,7 +69,7 @@ pub(super) fn terms(preset: Preset) -> Vec<Term> {
                 ..c.parameters.material
             };
         },
-        |r| (r.bytes.second, r.n_second_passes),
+        |r| (r.own.bytes.second, r.own.n_second_passes),
     );
     add(
         "external field",
@@ -109,7 +114,7 @@ fn run(
         Ok(Taken {
             cpu_seconds: clock.seconds(),
             calls: charged.report().n_steps + report.counters.n_rate_evaluations,
-            peak_bytes: report.bytes.total(),
+            peak_bytes: report.n_bytes(),
             term_bytes,
             term_calls,
         })

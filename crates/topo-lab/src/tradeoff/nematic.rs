@@ -99,7 +99,7 @@ impl Run {
             .report()
             .bytes
             .total()
-            .max(run.record.report.bytes.total());
+            .max(run.record.report.n_bytes());
         let found = [
             Some(charged.energy().total()),
             Some(charged.order().magnitude()),

@@ -145,7 +145,12 @@ impl NematicBattery {
             coarse_start: false,
             ..settings.clone()
         };
-        let charged = coarse.relax(&coarse_settings, None, &mut hooks.without_files(), false)?;
+        let charged = coarse.relax(
+            &coarse_settings,
+            None,
+            &mut RunHooks::new(hooks.interrupt()),
+            false,
+        )?;
         Ok(charged.state.interpolated(&fine))
     }
 }

@@ -2,12 +2,12 @@
 
 mod unfinished;
 
-use topo_core::CpuClock;
+use topo_core::{CpuClock, Phase, Progress};
 
 use self::unfinished::{Best, MOST_KICKS, Moving, Progressed, Unfinished};
 use super::NematicBattery;
 use super::charge_settings::ChargeSettings;
-use super::hooks::{Phase, Progress, RunHooks};
+use super::hooks::RunHooks;
 use super::minimum::Check;
 use super::record::{ChargeReport, ChargeStop};
 use crate::MinimumState;
@@ -195,11 +195,9 @@ impl<'a, 'h> Charging<'a, 'h> {
                     .is_some_and(|last: f64| (order - last).abs() < settings.order_tolerance);
                 last_order = Some(order);
                 self.hooks.report(&Progress {
-                    phase: Phase::Charge,
                     step,
-                    time: 0.0,
-                    energy: None,
-                    rms_field: rms,
+                    rms_field: Some(rms),
+                    ..Progress::at(Phase::Charge)
                 });
                 if settled && rms < settings.tolerance {
                     break End::Converged;
@@ -257,7 +255,7 @@ impl<'a, 'h> Charging<'a, 'h> {
         }
         let progressed = self.at_present();
         let record = Unfinished { progressed, moving };
-        self.hooks.save(SCHEMA, &self.case, &record)
+        Ok(self.hooks.save(SCHEMA, &self.case, &record)?)
     }
 
     fn finish(self, end: End) -> Result<(NematicState, ChargeReport), NematicError> {

@@ -1,10 +1,10 @@
 //! What of a charge is kept from moment to moment, and whether a checkpoint fits.
 
 use serde::{Deserialize, Serialize};
+use topo_core::MOST_COUNTED;
 
 use crate::NematicState;
 use crate::battery::NematicBattery;
-use crate::battery::hooks::MOST_COUNTED;
 use crate::battery::minimum::MinimumReport;
 use crate::relax::Clock;
 

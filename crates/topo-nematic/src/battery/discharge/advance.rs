@@ -1,13 +1,13 @@
 //! The loop of a discharge: look, step, keep the books.
 
-use topo_core::{CpuClock, Rejection, Schedule, StepControl, StopReason};
+use topo_core::{CpuClock, Phase, Progress, Rejection, Schedule, StepControl, StopReason};
 
 use super::super::coupled_flow::{CoupledFlow, CoupledMemory};
 use super::super::final_state::nothing;
-use super::super::hooks::{Phase, Progress, RunHooks};
+use super::super::hooks::RunHooks;
 use super::super::ramp::Ramp;
 use super::super::record::FinalState;
-use super::super::record::{NematicSample, PhaseReport, RunRecord};
+use super::super::record::{NematicPhase, NematicSample, PhaseReport, RunRecord};
 use super::super::switch::SwitchedNematic;
 use super::progressing::Progressing;
 use super::{Discharge, DischargeSettings};
@@ -297,8 +297,8 @@ impl<'a, T: Real> Advance<'a, T> {
             max_speed: flow.map(|f| f.max_speed()),
             flow_correlation,
         };
-        if hooks.wants_samples() {
-            hooks.show(&sample, &self.state, flow);
+        if let Some(see) = hooks.samples() {
+            see(&sample, &self.state, flow);
         }
         run.samples.push(sample);
     }
@@ -309,7 +309,7 @@ impl<'a, T: Real> Advance<'a, T> {
         self.run.cpu_seconds = self.earlier_cpu_seconds + self.clock.seconds();
         let memory = self.flow.as_ref().map(|flow| flow.memory(&self.field));
         let saved = (&self.run, self.state.q_tensor(), memory);
-        hooks.save(SCHEMA, &self.case, &saved)
+        Ok(hooks.save(SCHEMA, &self.case, &saved)?)
     }
 
     fn next_step(&self) -> f64 {
@@ -409,12 +409,16 @@ impl<'a, T: Real> Advance<'a, T> {
 
     fn progress(&self) -> Progress {
         let mean_square = self.field.square_of_field / self.kernel.domain.total_mass.max(1.0);
+        let start = self.switched.start();
+        let stored = self.switched.stored(&self.end);
         Progress {
-            phase: Phase::Discharge,
             step: self.run.n_steps,
             time: self.run.time,
+            until: Some(self.until),
+            released: stored.map(|stored| (start - self.energy.total()) / stored),
             energy: Some(self.energy.total()),
-            rms_field: mean_square.sqrt(),
+            rms_field: Some(mean_square.sqrt()),
+            ..Progress::at(Phase::Discharge)
         }
     }
 
@@ -429,15 +433,17 @@ impl<'a, T: Real> Advance<'a, T> {
             counters: self.field.counters,
             ledger_residual: self.run.ledger.relative_residual(),
             ledger: self.run.ledger,
-            bytes: ByteAccount {
-                fields: self.field.n_bytes(),
-                geometry: self.kernel.n_bytes(),
-                second: self.kernel.n_second_bytes(),
-                flow: flow.map_or(0, |f| f.n_bytes() as u64),
-            },
             cpu_seconds: self.earlier_cpu_seconds + self.clock.seconds(),
-            n_second_passes: self.kernel.n_second_passes(),
-            flow: flow.map(CoupledFlow::report),
+            own: NematicPhase {
+                bytes: ByteAccount {
+                    fields: self.field.n_bytes(),
+                    geometry: self.kernel.n_bytes(),
+                    second: self.kernel.n_second_bytes(),
+                    flow: flow.map_or(0, |f| f.n_bytes() as u64),
+                },
+                n_second_passes: self.kernel.n_second_passes(),
+                flow: flow.map(CoupledFlow::report),
+            },
         };
         Discharge {
             removed: self.switched.removed(),

@@ -1,9 +1,8 @@
 //! A discharge on its way, as its checkpoint keeps it.
 
 use serde::{Deserialize, Serialize};
-use topo_core::{DischargeCurve, Ledger, RejectionCounts, StepControl};
+use topo_core::{DischargeCurve, Ledger, MOST_COUNTED, RejectionCounts, StepControl};
 
-use super::super::hooks::MOST_COUNTED;
 use super::super::record::{CHANNELS, NematicSample};
 use crate::EnergyParts;
 
