@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use topo_analysis::{SweepRow, read_table};
-use topo_core::{Interrupt, Polyline};
+use topo_core::{Polyline, RunHooks};
 use topo_knots::{KnotTable, closed_braid};
 use topo_lab::{ElasticScene, SweepSettings, run_sweep};
 use topo_rod::{Accuracy, CutSite, Guards, RodBattery, RodError, RodParameters};
@@ -183,6 +183,6 @@ fn law_disturbed_starts_stay_near() {
         duration: 1e-3,
         ..Default::default()
     };
-    let charged = near.charge(&charge, &Interrupt::new()).unwrap();
+    let charged = near.charge(&charge, &mut RunHooks::default()).unwrap();
     assert!(charged.cut(CutSite::At(0.5)).is_ok());
 }

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use nalgebra::{Matrix3, Vector3};
 use topo_analysis::{DischargeTimes, ELASTIC_SHARES};
-use topo_core::{Interrupt, reference_energy, reference_time};
+use topo_core::{RunHooks, reference_energy, reference_time};
 use topo_knots::KnotTable;
 use topo_lab::{ElasticScene, SweepSettings, run_sweep};
 use topo_rod::contact::ContactPairs;
@@ -132,7 +132,7 @@ fn val_circle_in_a_trap_shrinks_as_its_closed_form() {
         duration: 0.1,
         ..Default::default()
     };
-    let charged = battery.charge(&settings, &Interrupt::new()).unwrap();
+    let charged = battery.charge(&settings, &mut RunHooks::default()).unwrap();
     let record = charged.record();
     let (scale, t0) = (reference_energy(length), reference_time(length));
     let (l0, half) = (length / n as f64, PI / n as f64);
@@ -180,7 +180,7 @@ fn val_circle_in_a_trap_shrinks_as_its_closed_form() {
     let density = charged.density().iter().map(|w| w * length / scale);
     assert!(density.into_iter().all(|w| (w / total - 1.0).abs() < 1e-6));
     // without the trap there is no such part
-    let plain = circle(n, length, 1e-6).charge(&settings, &Interrupt::new());
+    let plain = circle(n, length, 1e-6).charge(&settings, &mut RunHooks::default());
     let plain = plain.unwrap();
     let last = plain.record().samples.last().unwrap();
     assert_eq!((last.stored.of("trap"), last.stored.len()), (0.0, 4));
@@ -219,7 +219,6 @@ fn val_cut_circle_in_a_weak_trap() {
     let k = 5e-4 * (TAU / length).powi(4);
     let battery = circle(n, length, 1e-5);
     let battery = battery.with(move |_| Box::new(Trap::of(k))).unwrap();
-    let interrupt = Interrupt::new();
     let charge = ChargeSettings {
         duration: 0.1,
         ..Default::default()
@@ -228,9 +227,9 @@ fn val_cut_circle_in_a_weak_trap() {
         until_released: 0.991,
         ..Default::default()
     };
-    let charged = battery.charge(&charge, &interrupt).unwrap();
+    let charged = battery.charge(&charge, &mut RunHooks::default()).unwrap();
     let cut = charged.cut(CutSite::At(0.0)).unwrap();
-    let run = cut.discharge(&settings, &interrupt).unwrap();
+    let run = cut.discharge(&settings, &mut RunHooks::default()).unwrap();
     let record = &run.record;
     let bend = 0.125 * TAU * TAU / length;
     let stored = |t: f64| {
@@ -240,7 +239,7 @@ fn val_cut_circle_in_a_weak_trap() {
     let start = stored(0.0);
     assert!((run.start * reference_energy(length) / start - 1.0).abs() < 1e-3);
     // t99 of all that is stored, and of bend alone as if the trap were not there
-    let parts = record.parts.elastic();
+    let parts = record.report.own.parts.elastic();
     assert_eq!(parts, ["bend", "twist", "stretch", "trap"]);
     let found = DischargeTimes::of(&record.curve, &parts, run.start, &ELASTIC_SHARES);
     for share in ELASTIC_SHARES {

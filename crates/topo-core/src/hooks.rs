@@ -135,10 +135,15 @@ impl<'a, F: ?Sized> RunHooks<'a, F> {
         }
         match flaw(&value) {
             None => Ok(Some(value)),
-            Some(what) => Err(FileError::Corrupt {
-                path: path.clone(),
-                what: what.to_owned(),
-            }),
+            Some(what) => Err(self.refused(what)),
+        }
+    }
+
+    /// The refusal of a checkpoint whose parts do not fit each other.
+    pub fn refused(&self, what: &str) -> FileError {
+        FileError::Corrupt {
+            path: self.checkpoint.clone().unwrap_or_default(),
+            what: what.to_owned(),
         }
     }
 

@@ -29,7 +29,9 @@ mod units;
 pub use check::{
     InvalidValue, finite, finite_difference_gradient, in_range, non_negative, positive,
 };
-pub use checkpoint::{checkpoint_bytes, load_checkpoint, parse_checkpoint, save_checkpoint};
+pub use checkpoint::{
+    case_identity, checkpoint_bytes, load_checkpoint, parse_checkpoint, save_checkpoint,
+};
 pub use control::{Rejection, RejectionCounts, StepControl};
 pub use cpu::CpuClock;
 pub use curve::{
@@ -43,13 +45,13 @@ pub use hooks::{MOST_COUNTED, Phase, Progress, RunHooks};
 pub use integrate::{
     Counters, Fire, ForceFn, GAMMA_L_STABLE_LARGE, GAMMA_L_STABLE_SMALL, LinearlyImplicit, Model,
     Relaxation, RelaxationEnd, Relaxed, Rkc2, Rkc2Stage, Rkc2Stages, RosenbrockW, SpectralBound,
-    Stepper, Trial, max_norm,
+    Stepper, StepperMemory, Trial, max_norm,
 };
 pub use ledger::{CompensatedSum, EnergyEvent, Ledger};
 pub use minimum::MinimumState;
 pub use observe::{Observer, Sample, Schedule, Scheduled};
 pub use phase::{PhaseExtension, PhaseReport, RunRecord};
-pub use simulation::{Interrupt, Simulation, StopCondition, StopReason};
+pub use simulation::{Interrupt, Simulation, SimulationMemory, StopCondition, StopReason};
 pub use snapshot::Snapshot;
 pub use units::{
     RodMaterial, RodUnits, SILICONE, bending_time, energy_over_reference, reference_energy,

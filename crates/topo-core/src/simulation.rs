@@ -1,5 +1,7 @@
 //! The loop that carries a model through time.
 
+mod memory;
+
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -9,6 +11,8 @@ use crate::control::{Rejection, RejectionCounts, StepControl};
 use crate::integrate::{Counters, Model, Stepper};
 use crate::ledger::Ledger;
 use crate::observe::{Sample, Scheduled};
+
+pub use memory::SimulationMemory;
 
 /// Why a run ended: a value, not an error, since a run that stops early is still a run.
 #[derive(Clone, Debug, PartialEq, Serialize, thiserror::Error)]
@@ -106,6 +110,8 @@ pub struct Simulation<M: Model, S> {
     time: f64,
     last_dt: f64,
     n_steps: u64,
+    /// Trial steps of the present run.
+    n_trials: u64,
     rejections: RejectionCounts,
     no_ledger: Ledger,
 }
@@ -124,21 +130,15 @@ impl<M: Model, S: Stepper<M>> Simulation<M, S> {
             time: 0.0,
             last_dt: 0.0,
             n_steps: 0,
+            n_trials: 0,
             rejections: RejectionCounts::default(),
             no_ledger: Ledger::default(),
         }
     }
 
-    /// The same simulation, which stops when `interrupt` asks.
+    /// The same simulation, which stops between two steps when `interrupt` asks.
     pub fn with_interrupt(mut self, interrupt: Interrupt) -> Self {
         self.interrupt = interrupt;
-        self
-    }
-
-    /// The same simulation continued from `time` after `n_steps` steps, as when resumed from a checkpoint.
-    pub fn resumed_at(mut self, time: f64, n_steps: u64) -> Self {
-        self.time = time;
-        self.n_steps = n_steps;
         self
     }
 
@@ -151,30 +151,46 @@ impl<M: Model, S: Stepper<M>> Simulation<M, S> {
         observers: &mut [Scheduled<'_, M::State>],
         stop: &mut StopCondition<'_, M::State>,
     ) -> StopReason {
-        let mut n_trials = 0;
+        self.n_trials = 0;
         loop {
-            let sample = self.sample();
-            for observer in observers.iter_mut() {
-                observer.offer(&sample);
-            }
-            if let Some(reason) = stop(&sample) {
-                return StopReason::Condition(reason);
-            }
-            // A NaN ends the run as well.
-            let before_the_end = self.time < until;
-            if !before_the_end {
-                return StopReason::ReachedTime;
-            }
-            let exact = observers.iter().filter_map(|o| o.schedule().next_exact());
-            let target = exact.filter(|t| *t > self.time).fold(until, f64::min);
-            if let Some(reason) = self.step_towards(target, &mut n_trials) {
+            if let Some(reason) = self.advance(until, observers, stop) {
                 return reason;
             }
         }
     }
 
+    /// One turn of [`run`](Self::run): shows the present state, and makes an accepted step unless the run is over; gives the reason
+    /// then. What is [remembered](Self::memory) between two turns leads to the same steps.
+    ///
+    /// Trial steps are counted on since the start or the last [change](Self::modify).
+    pub fn advance(
+        &mut self,
+        until: f64,
+        observers: &mut [Scheduled<'_, M::State>],
+        stop: &mut StopCondition<'_, M::State>,
+    ) -> Option<StopReason> {
+        let sample = self.sample();
+        for observer in observers.iter_mut() {
+            observer.offer(&sample);
+        }
+        if let Some(reason) = stop(&sample) {
+            return Some(StopReason::Condition(reason));
+        }
+        // A NaN ends the run as well.
+        let before_the_end = self.time < until;
+        if !before_the_end {
+            return Some(StopReason::ReachedTime);
+        }
+        if self.interrupt.is_requested() {
+            return Some(StopReason::Interrupted);
+        }
+        let exact = observers.iter().filter_map(|o| o.schedule().next_exact());
+        let target = exact.filter(|t| *t > self.time).fold(until, f64::min);
+        self.step_towards(target)
+    }
+
     /// Makes one accepted step that does not pass `target`, or says why it cannot.
-    fn step_towards(&mut self, target: f64, n_trials: &mut u64) -> Option<StopReason> {
+    fn step_towards(&mut self, target: f64) -> Option<StopReason> {
         let longest = match self.stepper.longest_step(&mut self.model, &self.state) {
             Ok(dt) => dt,
             Err(why) => return Some(StopReason::Failed { why }),
@@ -185,13 +201,10 @@ impl<M: Model, S: Stepper<M>> Simulation<M, S> {
             .min(longest)
             .min(self.model.longest_step());
         loop {
-            if self.interrupt.is_requested() {
-                return Some(StopReason::Interrupted);
+            if self.n_trials >= self.control.max_trials() {
+                return Some(StopReason::StepLimit { n: self.n_trials });
             }
-            if *n_trials >= self.control.max_trials() {
-                return Some(StopReason::StepLimit { n: *n_trials });
-            }
-            *n_trials += 1;
+            self.n_trials += 1;
             let remaining = target - self.time;
             // Two equal steps at the end are better than a long one and a sliver.
             let lands = dt >= remaining * (1.0 - 1e-9);
@@ -284,6 +297,7 @@ impl<M: Model, S: Stepper<M>> Simulation<M, S> {
         let result = change(&mut self.model, &mut self.state);
         self.candidate = self.state.clone();
         self.stepper.reset();
+        self.n_trials = 0;
         result
     }
 

@@ -158,6 +158,10 @@ impl LabError {
             Self::Nematic {
                 source: topo_nematic::NematicError::File(error),
                 ..
+            }
+            | Self::Rod {
+                source: topo_rod::RodError::File(error),
+                ..
             } => Some(error),
             _ => None,
         }

@@ -37,7 +37,7 @@ impl Default for Guards {
 /// A single step may gain little, and never more than a tenth of what the whole run has left: the sum cannot reach the limit,
 /// however many steps there are. A gradient flow descends along any step that is short enough, so a refused one is only
 /// retried shorter.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
 pub(crate) struct RiseBudget {
     /// Energy that the limits are relative to.
     scale: f64,
@@ -56,6 +56,11 @@ impl RiseBudget {
             scale: energy.abs(),
             risen: 0.0,
         }
+    }
+
+    /// Whether its numbers are finite.
+    pub(crate) fn is_sound(&self) -> bool {
+        self.scale.is_finite() && self.risen.is_finite()
     }
 
     /// Widens the scale of a run whose ends are driven: it may start at rest.

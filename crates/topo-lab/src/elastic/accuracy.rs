@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use topo_core::{CpuClock, Interrupt};
+use topo_core::{CpuClock, Interrupt, RunHooks};
 use topo_knots::{KnotEntry, KnotTable};
 use topo_rod::{Accuracy, CutSite, Ends, Reading, cut_circle_time};
 
@@ -115,11 +115,12 @@ pub(crate) fn measured_discharge(
     site: CutSite,
     interrupt: &Interrupt,
 ) -> Result<MeasuredDischarge, LabError> {
-    let charged = charge(job, interrupt)?.rod;
+    let mut hooks = RunHooks::new(interrupt);
+    let charged = charge(job, &mut hooks, None)?.rod;
     let last = charged.record().samples.last();
     let energy = last.map_or(f64::NAN, |s| s.elastic());
-    let run = job.discharge(&charged, site, &job.scene.discharge, interrupt)?;
-    let parts = run.record.parts.elastic();
+    let run = job.discharge(&charged, site, &job.scene.discharge, &mut hooks)?;
+    let parts = run.record.report.own.parts.elastic();
     let times = DischargeTimes::of(&run.record.curve, &parts, run.start, &ELASTIC_SHARES);
     let at = |share| times.at(share).map(|t| t.value);
     Ok(MeasuredDischarge {

@@ -209,7 +209,7 @@ fn about(made: &MadeCase<'_>) -> Result<About, LabError> {
     let entry = table.get(&case.knot)?;
     let cuts: Vec<_> = runs
         .iter()
-        .map(|FollowedCut { discharge: d, times, times_after_cut, timeline, row }| {
+        .map(|FollowedCut { discharge: d, times, times_after_cut, timeline, row, .. }| {
             json!({
                 "cut": d.at, "energy_removed_by_cut": d.removed, "elastic_energy_before_cut": d.start, "elastic_energy_after_cut": d.after_cut,
                 "tips_parted": d.parted, "times": times, "times_after_cut": times_after_cut, "knot_sequence": timeline.sequence(), "t_untie": row.t_untie, "report": d.record.report,

@@ -19,7 +19,6 @@ use super::scene::NematicScene;
 use super::snapshot::{Kept, RING_ORDER, centre};
 use crate::LabError;
 use crate::folder::{Outcome, forget_checkpoints, forget_file, make_folder};
-use crate::progress::Event;
 use crate::sweep::{About, Place, value};
 
 /// Schema of the checkpoint of snapshots.

@@ -1,7 +1,7 @@
 //! Extremes of the rod.
 
 use nalgebra::Vector3;
-use topo_core::{Interrupt, Polyline};
+use topo_core::{Interrupt, Polyline, RunHooks};
 use topo_rod::{
     Accuracy, ChargeSettings, ContactParameters, CutSite, DischargeSettings, FrictionParameters,
     Guards, RodBattery, RodParameters,
@@ -94,10 +94,10 @@ impl Case {
         };
         let run = || {
             let battery = RodBattery::new(&parameters, &accuracy, Guards::default(), &curve)?;
-            let charged = battery.charge(&charge, interrupt)?;
+            let charged = battery.charge(&charge, &mut RunHooks::new(interrupt))?;
             let record = charged.record();
             let mut found = violations(&record.curve, NOTHING);
-            found += u32::from(record.report.link_drift.is_some_and(|d| d > CROSSING));
+            found += u32::from(record.report.own.link_drift.is_some_and(|d| d > CROSSING));
             if !record.report.stop.is_success() {
                 return Ok(Verdict::stopped(
                     format!("charge: {}", record.report.stop),
@@ -106,7 +106,7 @@ impl Case {
             }
             let run = charged
                 .cut(CutSite::MaximumEnergyDensity)?
-                .discharge(&discharge, interrupt)?;
+                .discharge(&discharge, &mut RunHooks::new(interrupt))?;
             found += violations(&run.record.curve, NOTHING);
             let stop = &run.record.report.stop;
             Ok(if stop.is_success() {

@@ -3,15 +3,15 @@
 use std::f64::consts::{PI, TAU};
 
 use nalgebra::Vector3;
-use topo_core::Interrupt;
 
+use super::hooks::RunHooks;
 use super::record::Scales;
 use super::*;
 use crate::energy::StoredEnergy;
 use crate::{ChargeSettings, Reading, cut_candidates};
 
 /// A right-handed trefoil on a torus; of tube, the thinner the torus the less.
-fn trefoil(minor: f64) -> Polyline {
+pub(super) fn trefoil(minor: f64) -> Polyline {
     let vertex = |k: usize| {
         let u = TAU * k as f64 / 200.0;
         let r = 2.0 + minor * (3.0 * u).cos();
@@ -72,11 +72,11 @@ fn val_reported_units_of_fifty_radii() {
         duration: 0.02,
         ..Default::default()
     };
-    let charged = battery.charge(&settings, &Interrupt::new()).unwrap();
+    let charged = battery.charge(&settings, &mut RunHooks::default()).unwrap();
     let record = charged.record();
     let last = record.samples.last().unwrap();
     assert!((record.report.time - 0.02).abs() < 1e-12 && (last.time - 0.02).abs() < 1e-12);
-    let names: Vec<&str> = record.parts.names().collect();
+    let names: Vec<&str> = record.report.own.parts.names().collect();
     assert_eq!(names, ["bend", "twist", "stretch", "contact"]);
     // the books are per area in E_b h
     for (part, stored) in last.stored.by_part() {
@@ -92,7 +92,7 @@ fn val_reported_units_of_fifty_radii() {
     // released shares count what bend, twist and stretch hold, not what strands in contact do
     let mut sample = last.clone();
     let energies = vec![1.0, 2.0, 4.0, 8.0];
-    sample.stored = StoredEnergy::new(record.parts.clone(), energies);
+    sample.stored = StoredEnergy::new(record.report.own.parts.clone(), energies);
     assert_eq!(sample.elastic(), 7.0);
 }
 
