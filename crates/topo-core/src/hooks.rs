@@ -88,6 +88,13 @@ impl<'a, F: ?Sized> RunHooks<'a, F> {
         self.checkpoint = Some(path.to_owned());
     }
 
+    /// Names the checkpoint file of a further phase: that of the first, with `phase` as its last extension.
+    pub fn begin_phase(&mut self, phase: &str) {
+        if let Some(path) = &mut self.checkpoint {
+            path.as_mut_os_string().push(format!(".{phase}"));
+        }
+    }
+
     /// The token that asks the run to stop.
     pub fn interrupt(&self) -> &Interrupt {
         &self.interrupt

@@ -9,6 +9,7 @@ pub(crate) mod final_state;
 mod flow_direction;
 pub(crate) mod hooks;
 pub(crate) mod minimum;
+pub(crate) mod protocol;
 mod ramp;
 pub(crate) mod record;
 pub(crate) mod switch;

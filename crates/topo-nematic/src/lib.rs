@@ -39,6 +39,7 @@ pub use battery::charge_settings::ChargeSettings;
 pub use battery::discharge::{Discharge, DischargeSettings};
 pub use battery::hooks::RunHooks;
 pub use battery::minimum::MinimumReport;
+pub use battery::protocol::Protocol;
 pub use battery::record::{
     ChargeReport, ChargeStop, FinalSource, FinalState, FlowReport, NematicPhase, NematicSample,
     PhaseReport, RunRecord,

@@ -3,8 +3,7 @@
 use topo_core::{CpuClock, Interrupt};
 use topo_nematic::{
     ChargeSettings, DischargeSettings, ExternalField, FlowParameters, Material, NematicAccuracy,
-    NematicBattery, NematicParameters, PhaseReport, Precision, RunHooks, SurfacePattern,
-    SwitchSettings,
+    NematicBattery, NematicParameters, PhaseReport, Precision, Protocol, RunHooks, SurfacePattern,
 };
 
 use super::term::{Taken, Term};
@@ -100,15 +99,20 @@ fn run(
 ) -> Result<Taken, LabError> {
     let run = || {
         let battery = NematicBattery::new(&colloid.parameters, &colloid.accuracy)?;
-        let charge = ChargeSettings {
-            tolerance: 1e-6,
-            order_tolerance: 1e-4,
-            ..ChargeSettings::default()
+        let protocol = Protocol {
+            charge: ChargeSettings {
+                tolerance: 1e-6,
+                order_tolerance: 1e-4,
+                ..ChargeSettings::default()
+            },
+            discharge: colloid.discharge.clone(),
+            ..Protocol::default()
         };
         let clock = CpuClock::start();
-        let charged = battery.charge(&charge, &mut RunHooks::new(interrupt))?;
-        let released = charged.switch(&SwitchSettings::default())?;
-        let run = released.discharge(&colloid.discharge, &mut RunHooks::new(interrupt))?;
+        let (charged, run) = battery.run(&protocol, &mut RunHooks::new(interrupt))?;
+        let Some(run) = run else {
+            return Ok(Taken::default());
+        };
         let report = run.record.report;
         let (term_bytes, term_calls) = own(&report);
         Ok(Taken {
