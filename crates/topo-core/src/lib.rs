@@ -8,6 +8,9 @@
 //! Everything here is free of units, but for `units`: a rod's radius, bending modulus and viscosity are 1, and SI values enter and
 //! leave through [`RodUnits`].
 
+/// The vectors that everything here takes and gives.
+pub use nalgebra;
+
 mod check;
 mod checkpoint;
 mod control;
