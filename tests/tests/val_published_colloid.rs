@@ -123,8 +123,12 @@ fn val_published_method_and_our_settings_of_it() {
     assert_eq!(accuracy.tolerance, 3e-5);
     assert_eq!(accuracy.precision, Precision::Double);
     assert_eq!((accuracy.max_steps, accuracy.memory_limit), (100_000, None));
+    check_charge(&battery);
+    check_release();
+}
 
-    // A tilt of 0.05 cos(pi z/L_z) along x, to rms H < 1e-8 and an order parameter at rest.
+/// A tilt of 0.05 cos(pi z/L_z) along x, to rms H < 1e-8 and an order parameter at rest.
+fn check_charge(battery: &NematicBattery) {
     let charge = ChargeSettings::default();
     assert_eq!((charge.seeds, charge.seed_azimuth), (vec![0.05], 0.0));
     assert_eq!((charge.tolerance, charge.order_tolerance), (1e-8, 1e-6));
@@ -139,7 +143,9 @@ fn val_published_method_and_our_settings_of_it() {
         assert!((at[2] - exact).abs() < 1e-6, "{k}: {} {exact}", at[2]);
         assert_eq!(at[4], 0.0);
     }
+}
 
+fn check_release() {
     // "switching off the anchoring [...] allowing the director field to take any orientation".
     let free = SwitchTarget::Free(FreeSurface::CutCell);
     assert_eq!(

@@ -10,7 +10,7 @@ use serde::de::DeserializeOwned;
 
 use crate::checkpoint::{checkpoint_bytes, load_checkpoint};
 use crate::file::{FileError, write_atomic_bytes};
-use crate::simulation::Interrupt;
+use crate::stop::Interrupt;
 
 pub use progress::{Phase, Progress};
 

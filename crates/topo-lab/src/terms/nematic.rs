@@ -17,9 +17,9 @@ struct Colloid {
     discharge: DischargeSettings,
 }
 
-pub(super) fn terms(preset: Preset) -> Vec<Term> {
-    let radius = if preset == Preset::Draft { 7.5 } else { 15.0 };
-    let plain = Colloid {
+/// A colloid without further terms.
+fn plain(radius: f64) -> Colloid {
+    Colloid {
         parameters: NematicParameters {
             radius,
             spacing: 1.5,
@@ -31,7 +31,12 @@ pub(super) fn terms(preset: Preset) -> Vec<Term> {
             until_released: 0.99,
             ..DischargeSettings::default()
         },
-    };
+    }
+}
+
+pub(super) fn terms(preset: Preset) -> Vec<Term> {
+    let radius = if preset == Preset::Draft { 7.5 } else { 15.0 };
+    let plain = plain(radius);
     let shape = format!("R = {radius}, h = 1.5, q = 3");
     let mut terms = Vec::new();
     let mut add = |name: &'static str,
@@ -53,10 +58,8 @@ pub(super) fn terms(preset: Preset) -> Vec<Term> {
         "every step",
         |c| c.discharge.flow = Some(FlowParameters::default()),
         |r| {
-            (
-                r.own.bytes.flow,
-                r.own.flow.map_or(0, |f| f.counters.n_updates),
-            )
+            let n_updates = r.own.flow.map_or(0, |f| f.counters.n_updates);
+            (r.own.bytes.flow, n_updates)
         },
     );
     add(

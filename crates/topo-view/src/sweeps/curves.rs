@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::against::quoted;
 use super::cases::{Cases, Row};
-use super::groups::{Groups, Look, others};
+use super::groups::{Groups, others};
 use super::sheet::{self, Chart, Line, Scaling};
 use crate::data::read_csv;
 use crate::error::ViewError;

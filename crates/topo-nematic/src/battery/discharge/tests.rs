@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use topo_core::{Interrupt, Rejection};
 
-use crate::battery::coupled_flow::CoupledFlow;
+use super::flow::CoupledFlow;
 use crate::stabilised::{Drift, Stabilised};
 use crate::{
     ChargeSettings, DischargeSettings, FlowParameters, FreeSurface, NematicBattery,
@@ -258,7 +258,7 @@ fn flow_takes_what_the_energy_of_the_switched_surface_loses_by_it() {
 #[test]
 fn mean_powers_are_those_of_exponential_decay() {
     // The mean of exp(-t) over 0..1 and over 0..3; equal powers, and none at all, have themselves as their mean.
-    let mean = super::advance::mean_power;
+    let mean = super::model::mean_power;
     for time in [1.0_f64, 3.0, 2e-4, 1e-6] {
         let exact = -(-time).exp_m1() / time;
         assert!((mean(1.0, (-time).exp()) - exact).abs() < 1e-8, "{time}");
