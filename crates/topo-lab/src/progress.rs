@@ -79,7 +79,7 @@ pub struct SweepSettings {
     pub only_finished: bool,
     /// Keep the whole nematic field at each time looked at, for other tools; tables do not need it.
     pub keep_fields: bool,
-    /// Seconds between checkpoints inside a nematic case: a killed run loses at most about that.
+    /// Seconds between checkpoints inside a case: a killed run loses at most about that.
     pub checkpoint_seconds: f64,
 }
 

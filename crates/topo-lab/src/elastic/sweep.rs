@@ -188,7 +188,8 @@ impl Experiment for Rods<'_> {
     }
 }
 
-/// Runs all cases of a scene; what an earlier run finished with the same settings is kept.
+/// Runs all cases of a scene; what an earlier run finished with the same settings is kept, and a case that was interrupted or
+/// killed goes on from its last checkpoint.
 ///
 /// Each case writes its own folder and is complete when its `run.json` is there; `sweep.csv`, and `failed.csv` where a case failed,
 /// are written at the end, also after an interrupt, from what is finished. Results do not depend on the number of jobs.

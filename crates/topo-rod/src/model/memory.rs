@@ -193,6 +193,12 @@ impl ModelMemory {
         self.expected.is_wary()
     }
 
+    /// Whether a matrix of an earlier state is in use, and no step was refused lately.
+    pub(crate) fn is_reusing(&self) -> bool {
+        let reused = |frozen: Frozen| (2..6).contains(&frozen.n_uses);
+        self.frozen.is_some_and(reused) && !self.is_wary()
+    }
+
     /// Takes a part from another memory.
     pub(crate) fn take_part(&mut self, part: usize, from: &mut Self) {
         use std::mem::swap;
