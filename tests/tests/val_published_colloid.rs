@@ -7,11 +7,13 @@ use std::path::Path;
 use topo_analysis::{DischargeTimes, NEMATIC_SHARES, NematicRow};
 use topo_core::Interrupt;
 use topo_lab::{NematicScene, Preset};
+use topo_nematic::anchoring::{Plate, PlateDirector};
+use topo_nematic::flow::{FlowCoupling, FlowSolver};
+use topo_nematic::stokes::Drive;
 use topo_nematic::{
-    Anchoring, Boundary, ChargeSettings, DischargeSettings, Drive, EnergyParts, FlowCoupling,
-    FlowParameters, FlowSolver, FreeSurface, Material, NematicAccuracy, NematicBattery,
-    NematicParameters, Plate, PlateDirector, Precision, RunHooks, Sides, SurfacePattern,
-    SwitchSettings, SwitchTarget,
+    Anchoring, Boundary, ChargeSettings, DischargeSettings, EnergyParts, FlowParameters,
+    FreeSurface, Material, NematicAccuracy, NematicBattery, NematicParameters, Precision, RunHooks,
+    Sides, SurfacePattern, SwitchSettings, SwitchTarget,
 };
 
 #[test]

@@ -6,7 +6,7 @@
 //! and the finite differences that every energy is tested with).
 //!
 //! Everything here is free of units, but for `units`: a rod's radius, bending modulus and viscosity are 1, and SI values enter and
-//! leave through [`RodUnits`].
+//! leave through [`RodUnits`]. Points are nalgebra's vectors, re-exported as [`Vector3`]: a caller needs no nalgebra of the same version.
 
 /// The vectors that everything here takes and gives.
 pub use nalgebra;
@@ -54,6 +54,7 @@ pub use integrate::{
 };
 pub use ledger::{CompensatedSum, EnergyEvent, Ledger};
 pub use minimum::MinimumState;
+pub use nalgebra::Vector3;
 pub use observe::{Observer, Sample, Schedule, Scheduled};
 pub use phase::{PhaseExtension, PhaseReport, RunRecord};
 pub use simulation::{Simulation, SimulationMemory, StopCondition};

@@ -8,7 +8,7 @@ pub(crate) mod final_state;
 pub(crate) mod hooks;
 pub(crate) mod minimum;
 pub(crate) mod protocol;
-pub(crate) mod record;
+pub mod record;
 pub(crate) mod switch;
 
 use crate::kernel::run::{Kernel, Threads};

@@ -38,6 +38,7 @@ pub use error::RodError;
 pub use geometry::Geometry;
 pub use guard::Guards;
 pub use model::{RodModel, WorkAccount};
+pub use nalgebra::{Matrix3, Vector3};
 pub use parameters::{
     Accuracy, ContactParameters, FrictionParameters, FrictionRange, IntegratorKind, Reading,
     RodParameters, Tube,

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use nalgebra::Vector3;
+use topo_core::Vector3;
 use topo_core::{CpuClock, Progress, StopReason};
 use topo_knots::identify;
 use topo_rod::{

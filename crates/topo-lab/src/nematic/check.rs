@@ -1,8 +1,8 @@
 //! What is refused of a scene of colloids before anything runs.
 
-use topo_nematic::{
-    Anchoring, FlowSolver, NematicBattery, NematicError, Sides, StokesError, SwitchTarget,
-};
+use topo_nematic::flow::FlowSolver;
+use topo_nematic::stokes::StokesError;
+use topo_nematic::{Anchoring, NematicBattery, NematicError, Sides, SwitchTarget};
 
 use super::case::NematicCase;
 use super::scene::NematicScene;

@@ -1,9 +1,10 @@
 //! Ring and central plane of one discharge at many times, for moving pictures.
 
 use topo_core::Interrupt;
+use topo_nematic::flow::FlowCoupling;
+use topo_nematic::record::NematicSample;
 use topo_nematic::{
-    DischargeSettings, FlowCoupling, NematicBattery, NematicSample, NematicState, Protocol,
-    RunHooks, SurfacePattern, Threads,
+    DischargeSettings, NematicBattery, NematicState, Protocol, RunHooks, SurfacePattern, Threads,
 };
 
 use super::scene::NematicScene;

@@ -3,7 +3,8 @@
 use std::fmt;
 
 use serde::Serialize;
-use topo_nematic::{Anchoring, Boundary, PlateDirector, SurfacePattern};
+use topo_nematic::anchoring::PlateDirector;
+use topo_nematic::{Anchoring, Boundary, SurfacePattern};
 use topo_rod::{FrictionRange, Reading};
 
 use super::document::{Document, Found};

@@ -1,6 +1,6 @@
 //! Extremes of the rod.
 
-use nalgebra::Vector3;
+use topo_core::Vector3;
 use topo_core::{Interrupt, Polyline, RunHooks};
 use topo_rod::{
     Accuracy, ContactParameters, FrictionParameters, Guards, Protocol, RodBattery, RodParameters,

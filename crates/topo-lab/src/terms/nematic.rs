@@ -1,9 +1,10 @@
 //! Terms of a colloid: flow, second elastic constant, external field, second precision.
 
 use topo_core::{CpuClock, Interrupt};
+use topo_nematic::record::PhaseReport;
 use topo_nematic::{
     ChargeSettings, DischargeSettings, ExternalField, FlowParameters, Material, NematicAccuracy,
-    NematicBattery, NematicParameters, PhaseReport, Precision, Protocol, RunHooks, SurfacePattern,
+    NematicBattery, NematicParameters, Precision, Protocol, RunHooks, SurfacePattern,
 };
 
 use super::term::{Taken, Term};

@@ -10,11 +10,12 @@ use super::charge_settings::ChargeSettings;
 use super::hooks::RunHooks;
 use super::minimum::Check;
 use super::record::{ChargeReport, ChargeStop};
-use crate::MinimumState;
+use crate::battery::record::MinimumState;
 use crate::kernel::run::Kernel;
 use crate::memory::ByteAccount;
+use crate::order::order_parameter;
 use crate::relax::Relaxation;
-use crate::{NematicError, NematicState, order_parameter};
+use crate::{NematicError, NematicState};
 
 /// Steps between looks at the order parameter.
 const CHECK_EVERY: u64 = 25;

@@ -5,11 +5,13 @@ use topo_core::Rejection;
 
 use crate::battery::record::FlowReport;
 use crate::battery::switch::SwitchedNematic;
+use crate::flow::FlowCoupling;
 use crate::flow::FlowMemory;
 use crate::kernel::run::Kernel;
 use crate::real::Real;
 use crate::stabilised::{Drift, DriftMemory, Stabilised};
-use crate::{FlowCoupling, FlowParameters, NematicError, StokesError};
+use crate::stokes::StokesError;
+use crate::{FlowParameters, NematicError};
 
 /// The flow of a discharge and what is remembered of it.
 ///

@@ -9,7 +9,8 @@ use crate::battery::record::FinalState;
 use crate::battery::switch::SwitchedNematic;
 use crate::kernel::run::Kernel;
 use crate::real::Real;
-use crate::{Drive, EnergyParts, FlowParameters, NematicError, Precision};
+use crate::stokes::Drive;
+use crate::{EnergyParts, FlowParameters, NematicError, Precision};
 
 /// Largest rise of the energy in a step, relative to what is left above the final state.
 const MOST_RISE: f64 = 1e-6;

@@ -6,9 +6,11 @@ use super::DischargeSettings;
 use super::flow_direction::FlowDirection;
 use super::resume::Unfinished;
 use super::system::System;
+use crate::NematicState;
 use crate::battery::record::NematicSample;
+use crate::order::order_parameter;
 use crate::real::Real;
-use crate::{NematicState, order_parameter, ring};
+use crate::ring::ring;
 
 /// Observer of every step: the energy curve.
 pub(super) struct CurveRecorder {

@@ -13,7 +13,8 @@ use crate::battery::record::{FinalState, NematicPhase, PhaseReport, RunRecord};
 use crate::battery::switch::SwitchedNematic;
 use crate::memory::ByteAccount;
 use crate::real::Real;
-use crate::{Drive, NematicError, NematicState};
+use crate::stokes::Drive;
+use crate::{NematicError, NematicState};
 
 /// First step, in h²/(Gamma L).
 const FIRST_STEP: f64 = 1e-3;

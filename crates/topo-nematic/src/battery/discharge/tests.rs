@@ -6,10 +6,10 @@ use topo_core::{Interrupt, Rejection};
 
 use super::flow::CoupledFlow;
 use crate::stabilised::{Drift, Stabilised};
+use crate::tensor::uniaxial;
 use crate::{
     ChargeSettings, DischargeSettings, FlowParameters, FreeSurface, NematicBattery,
     NematicParameters, NematicState, RunHooks, SurfacePattern, SwitchSettings, SwitchTarget,
-    uniaxial,
 };
 
 const N: usize = 24;
@@ -222,9 +222,9 @@ fn flow_takes_what_the_energy_of_the_switched_surface_loses_by_it() {
             .kernel::<f64>(&after, charged.battery.accuracy().threads)
             .without_gaps();
         let mut errors = Vec::new();
-        let mut see = |sample: &crate::NematicSample,
+        let mut see = |sample: &crate::battery::record::NematicSample,
                        state: &NematicState,
-                       flow: Option<&crate::FlowCoupling>| {
+                       flow: Option<&crate::flow::FlowCoupling>| {
             let flow = flow.unwrap();
             if sample.time < ramp.unwrap_or(0.0) {
                 return;
