@@ -2,16 +2,17 @@
 //!
 //! The fuzz targets of the folder `fuzz` call these functions, and the test `fuzzing` replays its seeds and findings through them.
 
+mod batteries;
+
 use std::fmt::Debug;
 use std::path::Path;
-use std::sync::OnceLock;
 
 use nalgebra::Vector3;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use topo_analysis::{KnotRow, NematicRow, SweepRow, parse_table, table_bytes};
 use topo_core::{
-    Counters, DischargeCurve, Interrupt, Ledger, Polyline, RejectionCounts, Snapshot, StepControl,
+    Counters, DischargeCurve, Ledger, Polyline, RejectionCounts, Snapshot, StepControl,
     checkpoint_bytes, parse_checkpoint,
 };
 use topo_knots::{
@@ -19,16 +20,14 @@ use topo_knots::{
     curve_text, n_components, parse_braid, parse_components,
 };
 use topo_lab::{Battery, Colloid, Elastic, ElasticScene, FieldSnapshot, NematicScene, parse_scene};
-use topo_nematic::{
-    ChargeSettings, DischargeSettings, FlowParameters, NematicAccuracy, NematicBattery,
-    NematicError, NematicParameters, RunHooks, SwitchSettings, SwitchTarget, SwitchedNematic,
-};
+
+pub use batteries::{nematic_checkpoint, nematic_payloads, rod_checkpoint, rod_payloads};
 
 /// What is called with the bytes of a file.
 pub type Parser = fn(&[u8]);
 
 /// All parsers with the names of their fuzz targets.
-pub const PARSERS: [(&str, Parser); 10] = [
+pub const PARSERS: [(&str, Parser); 11] = [
     ("elastic_scene", elastic_scene),
     ("nematic_scene", nematic_scene),
     ("knot_file", knot_file),
@@ -39,6 +38,7 @@ pub const PARSERS: [(&str, Parser); 10] = [
     ("table", table),
     ("checkpoint", checkpoint),
     ("nematic_checkpoint", nematic_checkpoint),
+    ("rod_checkpoint", rod_checkpoint),
 ];
 
 /// Batteries whose scenes there are.
@@ -257,53 +257,6 @@ impl Serialize for Raw<'_> {
     }
 }
 
-/// Checkpoints of nematics: the bytes after the first as what a sound file of the case holds, which then goes on.
-///
-/// The first byte chooses charge (even) or discharge (odd, from 128 on with flow).
-pub fn nematic_checkpoint(data: &[u8]) {
-    let Some((kind, payload)) = data.split_first() else {
-        return;
-    };
-    let run = match (kind % 2, *kind >= 128) {
-        (0, _) => small_run(0),
-        (_, false) => small_run(1),
-        (_, true) => small_run(2),
-    };
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().join("checkpoint");
-    let file = checkpoint_bytes(&path, run.schema, &(&run.case, Raw(payload))).expect("encoded");
-    std::fs::write(&path, file).expect("written");
-    match run.go_on(&path) {
-        Ok(())
-        | Err(NematicError::File(_) | NematicError::Diverged { .. } | NematicError::Flow(_)) => {}
-        Err(other) => panic!("{other}"),
-    }
-}
-
-/// A battery of few cells, its checkpoint's schema and case.
-struct SmallRun {
-    schema: &'static str,
-    case: String,
-    battery: NematicBattery,
-    charge: ChargeSettings,
-    discharge: Option<(SwitchedNematic, DischargeSettings)>,
-    /// Contents of a checkpoint after the case.
-    payload: Vec<u8>,
-}
-
-impl SmallRun {
-    /// Goes on from the checkpoint in a file, for a few steps.
-    fn go_on(&self, path: &Path) -> Result<(), NematicError> {
-        let interrupt = Interrupt::default();
-        let mut hooks = RunHooks::new(&interrupt).with_checkpoint(path, 1e9);
-        match &self.discharge {
-            None => drop(self.battery.charge(&self.charge, &mut hooks)?),
-            Some((released, settings)) => drop(released.discharge(settings, &mut hooks)?),
-        }
-        Ok(())
-    }
-}
-
 /// Inputs of [`checkpoint`] that are sound, with names.
 pub fn checkpoint_payloads() -> Vec<(&'static str, Vec<u8>)> {
     let payload = |value: Vec<u8>, schema: &str| {
@@ -344,108 +297,3 @@ pub fn checkpoint_payloads() -> Vec<(&'static str, Vec<u8>)> {
 const HEAD: usize = 8 + 4 + 2;
 /// Bytes of the digest at its end.
 const DIGEST: usize = 32;
-
-/// What a sound checkpoint of a nematic holds after its case, with the byte that chooses it: inputs of [`nematic_checkpoint`].
-pub fn nematic_payloads() -> Vec<(&'static str, Vec<u8>)> {
-    [("charge", 0u8), ("discharge", 1), ("flow", 129)]
-        .into_iter()
-        .enumerate()
-        .map(|(k, (name, byte))| (name, [&[byte], &small_run(k).payload[..]].concat()))
-        .collect()
-}
-
-fn small_run(which: usize) -> &'static SmallRun {
-    static RUNS: [OnceLock<SmallRun>; 3] = [const { OnceLock::new() }; 3];
-    RUNS[which].get_or_init(|| {
-        let parameters = NematicParameters {
-            radius: 3.0,
-            spacing: 1.5,
-            // A particle is held by the flow's forces; without flow it only makes the input longer.
-            particle: which == 2,
-            cells: Some(if which == 2 { [6, 6, 8] } else { [4, 4, 4] }),
-            ..NematicParameters::default()
-        };
-        let accuracy = NematicAccuracy {
-            max_steps: 4,
-            ..NematicAccuracy::default()
-        };
-        let battery = NematicBattery::new(&parameters, &accuracy).expect("a battery");
-        let charge = ChargeSettings {
-            max_steps: 3,
-            ..ChargeSettings::default()
-        };
-        let discharge = (which > 0).then(|| {
-            let mut none = RunHooks::new(&Interrupt::default());
-            let charged = battery.charge(&charge, &mut none).expect("a charge");
-            let to = if which == 2 {
-                SwitchTarget::default()
-            } else {
-                SwitchTarget::Keep
-            };
-            let released = charged.switch(&SwitchSettings { to, ramp: None });
-            let settings = DischargeSettings {
-                flow: (which == 2).then(FlowParameters::default),
-                ..DischargeSettings::default()
-            };
-            (released.expect("released"), settings)
-        });
-        let schema = if which == 0 {
-            "nematic-charge/2"
-        } else {
-            "nematic-discharge/3"
-        };
-        let mut run = SmallRun {
-            schema,
-            case: String::new(),
-            battery,
-            charge,
-            discharge,
-            payload: Vec::new(),
-        };
-        (run.case, run.payload) = run.sample();
-        run
-    })
-}
-
-impl SmallRun {
-    /// Case and payload of a checkpoint of this run.
-    fn sample(&self) -> (String, Vec<u8>) {
-        let folder = tempfile::tempdir().expect("a folder");
-        let path = folder.path().join("checkpoint");
-        let interrupt = Interrupt::default();
-        interrupt.request();
-        let mut hooks = RunHooks::new(&interrupt).with_checkpoint(&path, 0.0);
-        match &self.discharge {
-            None => drop(
-                self.battery
-                    .charge(&self.charge, &mut hooks)
-                    .expect("a charge"),
-            ),
-            Some((released, settings)) => {
-                drop(
-                    released
-                        .discharge(settings, &mut hooks)
-                        .expect("a discharge"),
-                );
-            }
-        }
-        let bytes = std::fs::read(&path).expect("a checkpoint");
-        let head = HEAD + self.schema.len() + 8;
-        let payload = &bytes[head..bytes.len() - DIGEST];
-        let (n, at) = length(payload);
-        let case = String::from_utf8(payload[at..at + n].to_vec()).expect("a name");
-        (case, payload[at + n..].to_vec())
-    }
-}
-
-/// A length of seven bits a byte, and where what it counts begins.
-fn length(bytes: &[u8]) -> (usize, usize) {
-    let mut n = 0;
-    for (k, byte) in bytes.iter().enumerate() {
-        n |= usize::from(byte & 127) << (7 * k);
-        if byte & 128 == 0 {
-            return (n, k + 1);
-        }
-    }
-    (n, bytes.len())
-}

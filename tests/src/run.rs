@@ -1,6 +1,6 @@
 //! A rod with its model, and the loop that carries it through time.
 
-use topo_core::{Interrupt, RosenbrockW, Simulation, StepControl, StopReason};
+use topo_core::{RosenbrockW, RunHooks, Simulation, StepControl, StopReason};
 use topo_rod::{
     Accuracy, ChargeSettings, CutSite, Discharge, DischargeSettings, Ends, Guards, RodBattery,
     RodModel, RodParameters, RodState, Tube,
@@ -148,10 +148,9 @@ pub fn discharge(battery: &RodBattery, duration: f64, longest: f64) -> Discharge
         longest,
         ..Default::default()
     };
-    let interrupt = Interrupt::new();
     battery
-        .charge(&charge, &interrupt)
+        .charge(&charge, &mut RunHooks::default())
         .and_then(|charged| charged.cut(CutSite::MaximumEnergyDensity))
-        .and_then(|cut| cut.discharge(&settings, &interrupt))
+        .and_then(|cut| cut.discharge(&settings, &mut RunHooks::default()))
         .expect("a battery of a test")
 }

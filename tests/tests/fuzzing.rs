@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use topo_tests::parsers::{PARSERS, checkpoint_payloads, nematic_payloads};
+use topo_tests::parsers::{PARSERS, checkpoint_payloads, nematic_payloads, rod_payloads};
 
 fn folder(kind: &str, target: &str) -> PathBuf {
     let fuzz = Path::new(env!("CARGO_MANIFEST_DIR")).join("../fuzz");
@@ -68,10 +68,24 @@ fn checkpoints_of_the_present_schemas_are_gone_on_from() {
         let payloads = match name {
             "checkpoint" => checkpoint_payloads(),
             "nematic_checkpoint" => nematic_payloads(),
+            "rod_checkpoint" => rod_payloads(),
             _ => continue,
         };
         for (_, bytes) in payloads {
             parser(&bytes);
+        }
+    }
+}
+
+/// Each of many bytes of a sound checkpoint changed: refused, or gone on from.
+#[test]
+fn changed_checkpoints_of_rods_are_refused_or_gone_on_from() {
+    for (_, bytes) in rod_payloads() {
+        let stride = bytes.len() / 150;
+        for at in (1..bytes.len()).step_by(stride.max(1)) {
+            let mut changed = bytes.clone();
+            changed[at] ^= [0x01, 0x40, 0x80][at % 3];
+            topo_tests::parsers::rod_checkpoint(&changed);
         }
     }
 }

@@ -36,18 +36,18 @@ fn run_rod(parameters: &RodParameters, curve: &Polyline) -> (PhaseReport, Discha
     let accuracy = Accuracy::default();
     let guards = Guards::default();
     let battery = RodBattery::new(parameters, &accuracy, guards, curve).unwrap();
-    let interrupt = Interrupt::new();
     let charge = ChargeSettings {
         duration: 0.2,
         ..ChargeSettings::default()
     };
-    let charged = battery.charge(&charge, &interrupt).unwrap();
+    let none = &mut topo_core::RunHooks::default();
+    let charged = battery.charge(&charge, none).unwrap();
     let settings = DischargeSettings {
         until_released: 0.5,
         ..DischargeSettings::default()
     };
     let cut = charged.cut(CutSite::At(0.1)).unwrap();
-    let discharge = cut.discharge(&settings, &interrupt).unwrap();
+    let discharge = cut.discharge(&settings, none).unwrap();
     (charged.record().report.clone(), discharge)
 }
 
@@ -102,7 +102,7 @@ fn bits(curve: &DischargeCurve) -> Vec<u64> {
 #[test]
 fn law_absent_terms_of_a_rod_cost_nothing() {
     let (closed, open) = run_rod(&rod(), &trefoil());
-    for work in [closed.work, open.record.report.work] {
+    for work in [closed.own.work, open.record.report.own.work] {
         assert!(work.n_evaluations > 10);
         let calls = [
             work.n_contact_evaluations,
@@ -123,7 +123,7 @@ fn law_absent_terms_of_a_rod_cost_nothing() {
         ..rod()
     };
     let (closed, open) = run_rod(&everything, &trefoil());
-    for work in [closed.work, open.record.report.work] {
+    for work in [closed.own.work, open.record.report.own.work] {
         assert!(work.n_contact_evaluations > 10 && work.contact_bytes > 0);
         assert!(work.n_friction_evaluations > 10 && work.friction_bytes > 0);
         assert!(work.n_twist_evaluations > 10 && work.twist_bytes > 0);
@@ -133,7 +133,7 @@ fn law_absent_terms_of_a_rod_cost_nothing() {
 
 #[test]
 fn law_absent_terms_of_a_nematic_cost_nothing() {
-    let plain = run_colloid(&colloid(), None).record.report;
+    let plain = run_colloid(&colloid(), None).record.report.own;
     assert_eq!((plain.bytes.flow, plain.bytes.second), (0, 0));
     assert_eq!((plain.flow, plain.n_second_passes), (None, 0));
     let everything = NematicParameters {
@@ -145,7 +145,8 @@ fn law_absent_terms_of_a_nematic_cost_nothing() {
     };
     let full = run_colloid(&everything, Some(FlowParameters::default()))
         .record
-        .report;
+        .report
+        .own;
     assert!(full.bytes.flow > 0 && full.flow.unwrap().counters.n_updates > 10);
     assert!(full.bytes.second > 0 && full.n_second_passes > 10);
     // The rest takes what it took.
@@ -170,7 +171,7 @@ fn law_friction_of_strength_zero_changes_nothing() {
     let (_, without) = run_rod(&touching, &trefoil());
     let (_, with) = run_rod(&smooth, &trefoil());
     assert_eq!(bits(&with.record.curve), bits(&without.record.curve));
-    assert_eq!(with.record.report.work.n_friction_evaluations, 0);
+    assert_eq!(with.record.report.own.work.n_friction_evaluations, 0);
     let rough = RodParameters {
         friction: Some(FrictionParameters::default()),
         ..touching
@@ -240,7 +241,10 @@ fn law_nematic_terms_of_strength_zero_change_nothing() {
     assert_eq!(bits(&with.record.curve), bits(&without.record.curve));
     assert_eq!(with.state, without.state);
     let report = with.record.report;
-    assert_eq!((report.n_second_passes, report.bytes.second), (0, 0));
+    assert_eq!(
+        (report.own.n_second_passes, report.own.bytes.second),
+        (0, 0)
+    );
     let weak = NematicParameters {
         field: Some(ExternalField {
             vector: [0.0, 0.0, 0.1],

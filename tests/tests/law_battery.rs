@@ -1,6 +1,6 @@
 //! Laws of a whole charge and discharge: link, energy books, mirror images, determinism, friction, what is absent.
 
-use topo_core::{Interrupt, Polyline, Rejection, StopReason};
+use topo_core::{Polyline, Rejection, RunHooks, StopReason};
 use topo_rod::{
     Accuracy, ChargeSettings, ChargedRod, ContactParameters, CutSite, Discharge, DischargeSettings,
     FrictionParameters, Guards, IntegratorKind, RodBattery, RodParameters,
@@ -29,7 +29,7 @@ fn charged(battery: &RodBattery, duration: f64) -> ChargedRod {
         duration,
         ..Default::default()
     };
-    battery.charge(&settings, &Interrupt::new()).unwrap()
+    battery.charge(&settings, &mut RunHooks::default()).unwrap()
 }
 
 fn start_trefoil() -> Polyline {
@@ -48,7 +48,7 @@ fn law_link_is_kept_through_a_charge() {
         let run = charged(&battery(&curve, twisted(100, twist), 2e-3), 1.0);
         let samples = &run.record().samples;
         let (first, last) = (&samples[0], &samples[samples.len() - 1]);
-        let drift = run.record().report.link_drift.unwrap();
+        let drift = run.record().report.own.link_drift.unwrap();
         println!(
             "twist {twist}: Wr {:.3} -> {:.3}, Tw {:.3} -> {:.3}, drift {drift:.1e}",
             first.writhe, last.writhe, first.total_twist, last.total_twist
@@ -146,7 +146,7 @@ fn law_runs_are_deterministic() {
     };
     let (a, b) = (run(), run());
     assert_eq!(a.record.curve, b.record.curve);
-    assert_eq!(a.record.report.work, b.record.report.work);
+    assert_eq!(a.record.report.own.work, b.record.report.own.work);
     let state = |d: &Discharge| d.record.samples.last().unwrap().state.clone();
     assert_eq!(state(&a).vertices(), state(&b).vertices());
     assert_eq!(state(&a).twists(), state(&b).twists());
@@ -226,7 +226,10 @@ fn law_forced_crossing_is_caught_by_the_certificate() {
         } | StopReason::StepLimit { .. }
     );
     assert!(stuck, "{}", report.stop);
-    assert!(report.link_drift.unwrap() < 1e-10, "a strand has passed");
+    assert!(
+        report.own.link_drift.unwrap() < 1e-10,
+        "a strand has passed"
+    );
     // the same with contact goes through
     let parameters = RodParameters {
         contact: Some(ContactParameters::default()),
@@ -266,7 +269,7 @@ fn law_cut_removes_what_its_vertex_held() {
         longest: 1e-3,
         ..Default::default()
     };
-    let run = cut.discharge(&settings, &Interrupt::new()).unwrap();
+    let run = cut.discharge(&settings, &mut RunHooks::default()).unwrap();
     let removed = run.removed * closed.length() / std::f64::consts::PI;
     println!("removed {removed:.8}, held {:.8}", bend + twist);
     assert!((removed / (bend + twist) - 1.0).abs() < 1e-9);
@@ -285,28 +288,31 @@ fn law_absent_terms_cost_nothing() {
             .clone()
     };
     let all = run(twisted(80, 0.3));
-    assert!(all.work.n_twist_factorisations > 0 && all.work.n_list_rebuilds > 0);
-    assert!(all.work.contact_bytes > 0 && all.work.n_mobility_factorisations > 1);
+    assert!(all.own.work.n_twist_factorisations > 0 && all.own.work.n_list_rebuilds > 0);
+    assert!(all.own.work.contact_bytes > 0 && all.own.work.n_mobility_factorisations > 1);
     let none = run(RodParameters {
         twist: None,
         contact: None,
         friction: None,
         ..twisted(80, 0.0)
     });
-    assert_eq!(none.work.n_twist_factorisations, 0);
-    assert_eq!((none.work.n_list_rebuilds, none.work.contact_bytes), (0, 0));
+    assert_eq!(none.own.work.n_twist_factorisations, 0);
+    assert_eq!(
+        (none.own.work.n_list_rebuilds, none.own.work.contact_bytes),
+        (0, 0)
+    );
     // the resistance is constant without friction: factorised once
-    assert_eq!(none.work.n_mobility_factorisations, 1);
+    assert_eq!(none.own.work.n_mobility_factorisations, 1);
     assert_eq!(none.ledger.stored_in("twist"), None);
     assert_eq!(none.ledger.stored_in("contact"), None);
     assert_eq!(none.ledger.dissipated_by("friction"), Some(0.0));
     assert_eq!(none.ledger.dissipated_by("twist_viscosity"), Some(0.0));
-    assert_eq!(none.link_drift, None);
+    assert_eq!(none.own.link_drift, None);
     let frictionless = run(RodParameters {
         friction: None,
         ..twisted(80, 0.3)
     });
-    assert_eq!(frictionless.work.n_mobility_factorisations, 1);
+    assert_eq!(frictionless.own.work.n_mobility_factorisations, 1);
     assert_eq!(frictionless.ledger.dissipated_by("friction"), Some(0.0));
     assert_eq!(all.ledger.work(), 0.0, "nobody works on a closed rod");
 }

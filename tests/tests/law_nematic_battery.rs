@@ -3,11 +3,12 @@
 use std::path::Path;
 
 use topo_core::Interrupt;
+use topo_core::Progress;
+use topo_nematic::record::ChargeStop;
 use topo_nematic::{
-    Anchoring, Boundary, ChargeSettings, ChargeStop, ChargedNematic, Discharge, DischargeSettings,
+    Anchoring, Boundary, ChargeSettings, ChargedNematic, Discharge, DischargeSettings,
     FlowParameters, FreeSurface, Material, NematicAccuracy, NematicBattery, NematicParameters,
-    NematicState, Precision, Progress, RunHooks, SurfacePattern, SwitchSettings, SwitchTarget,
-    Threads,
+    NematicState, Precision, RunHooks, SurfacePattern, SwitchSettings, SwitchTarget, Threads,
 };
 use topo_tests::threads::on_threads;
 
@@ -69,7 +70,7 @@ fn law_switch_keeps_the_energy_and_the_books_balance() {
         );
     }
     // Without flow nothing is allocated for it, and no energy lost to it.
-    assert_eq!((report.bytes.flow, report.flow), (0, None));
+    assert_eq!((report.own.bytes.flow, report.own.flow), (0, None));
     assert_eq!(curve.series("viscous").unwrap().last(), Some(&0.0));
     // A staircase drops the links to the surface, and their energy with them.
     let stairs = SwitchTarget::Free(FreeSurface::Staircase);
@@ -249,7 +250,8 @@ fn law_interrupted_discharges_go_on_to_the_same_bits() {
             assert_eq!(run.record.curve, whole.record.curve);
             assert_eq!(report.ledger_residual, expected.ledger_residual);
             assert_eq!(report.counters, expected.counters);
-            let counts = |r: &topo_nematic::PhaseReport| r.flow.as_ref().map(|f| f.counters);
+            let counts =
+                |r: &topo_nematic::record::PhaseReport| r.own.flow.as_ref().map(|f| f.counters);
             assert_eq!(counts(report), counts(expected));
             for (a, b) in run.record.samples.iter().zip(&whole.record.samples) {
                 assert_eq!(a, b);
@@ -280,7 +282,7 @@ fn law_single_precision_changes_little() {
         let (a, b) = (time_to(&double, share), time_to(&single, share));
         assert!((a / b - 1.0).abs() < 1e-3, "{share}: {a} {b}");
     }
-    let fields = |run: &Discharge| run.record.report.bytes.fields as f64;
+    let fields = |run: &Discharge| run.record.report.own.bytes.fields as f64;
     assert!(fields(&single) < 0.55 * fields(&double));
 }
 
@@ -374,7 +376,7 @@ fn law_flow_speeds_the_discharge_and_its_books_balance() {
     let flowing = discharge_of(&charged, SwitchTarget::default(), None, &settings);
     let report = &flowing.record.report;
     assert!(report.ledger_residual < 0.01, "{}", report.ledger_residual);
-    assert!(report.bytes.flow > 0 && report.flow.unwrap().counters.n_updates > 10);
+    assert!(report.own.bytes.flow > 0 && report.own.flow.unwrap().counters.n_updates > 10);
     for share in [0.5, 0.01, 0.001] {
         let ratio = time_to(&flowing, share) / time_to(&still, share);
         assert!((0.85..1.0).contains(&ratio), "{share}: {ratio}");

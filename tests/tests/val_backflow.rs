@@ -3,9 +3,10 @@
 use std::f64::consts::PI;
 
 use topo_core::Interrupt;
+use topo_nematic::tensor::uniaxial;
 use topo_nematic::{
     Discharge, DischargeSettings, FlowParameters, Material, NematicAccuracy, NematicBattery,
-    NematicParameters, NematicState, RunHooks, SwitchSettings, SwitchTarget, uniaxial,
+    NematicParameters, NematicState, RunHooks, SwitchSettings, SwitchTarget,
 };
 
 /// A small tilt of a uniform director that decays by itself.
@@ -178,7 +179,7 @@ fn decay_on(mode: Mode, n: usize, tilt: f64, tolerance: f64, flow: bool) -> Deca
         error: rate / unit / mode.exact(&material, flow) - 1.0,
         n_steps: report.n_steps,
         mean_step: (to - from) / between.count() as f64,
-        n_updates: report.flow.map_or(0, |f| f.counters.n_updates),
+        n_updates: report.own.flow.map_or(0, |f| f.counters.n_updates),
         ledger_residual: report.ledger_residual,
     }
 }

@@ -6,7 +6,7 @@
 use std::f64::consts::PI;
 
 use topo_analysis::{DischargeTimes, ELASTIC_SHARES};
-use topo_core::{Interrupt, Polyline};
+use topo_core::{Polyline, RunHooks};
 use topo_knots::{KnotTable, TightenSettings, tighten_entry};
 use topo_rod::{
     Accuracy, ChargeSettings, ChargedRod, CutSite, Discharge, DischargeSettings, Guards,
@@ -43,7 +43,7 @@ fn charged(curve: &Polyline, twist: f64) -> ChargedRod {
         ..Default::default()
     };
     RodBattery::new(&parameters, &Accuracy::default(), Guards::default(), curve)
-        .and_then(|battery| battery.charge(&ChargeSettings::default(), &Interrupt::new()))
+        .and_then(|battery| battery.charge(&ChargeSettings::default(), &mut RunHooks::default()))
         .unwrap()
 }
 
@@ -53,7 +53,7 @@ fn discharged(rod: &ChargedRod, site: CutSite, until_released: f64) -> Discharge
         ..Default::default()
     };
     rod.cut(site)
-        .and_then(|cut| cut.discharge(&settings, &Interrupt::new()))
+        .and_then(|cut| cut.discharge(&settings, &mut RunHooks::default()))
         .unwrap()
 }
 
@@ -74,7 +74,7 @@ fn check_charge(curve: &Polyline, row: &Row) -> ChargedRod {
     let rod = charged(curve, row.twist);
     let report = &rod.record().report;
     assert!(report.stop.is_success(), "{}", report.stop);
-    assert!(report.link_drift.unwrap() < 1e-10);
+    assert!(report.own.link_drift.unwrap() < 1e-10);
     let last = rod.record().samples.last().unwrap();
     println!("theta' h = {:+}", row.twist);
     // E_0 = E_b h² L, so that e = 50/π E/E_0

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use nalgebra::Matrix3;
-use topo_core::{Interrupt, Polyline};
+use topo_core::{Polyline, RunHooks};
 use topo_knots::{KnotTable, TightKnot, TightenSettings, V, tighten_entry};
 use topo_rod::{Accuracy, ChargeSettings, ContactParameters, Guards, RodBattery, RodParameters};
 use topo_tests::curves::trefoil;
@@ -86,7 +86,7 @@ fn charged_energy(curve: &Polyline, n_edges: usize, twist: f64) -> f64 {
     let battery = RodBattery::new(&parameters, &Accuracy::default(), Guards::default(), curve);
     let run = battery
         .unwrap()
-        .charge(&ChargeSettings::default(), &Interrupt::new())
+        .charge(&ChargeSettings::default(), &mut RunHooks::default())
         .unwrap();
     assert!(run.record().report.stop.is_success());
     run.record().samples.last().unwrap().elastic()

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use topo_analysis::DischargeTimes;
-use topo_core::Interrupt;
+use topo_core::RunHooks;
 use topo_knots::{KnotTable, TightenSettings, tighten_entry};
 use topo_rod::{
     Accuracy, ChargeSettings, CutSite, Discharge, DischargeSettings, Guards, RodBattery,
@@ -28,9 +28,8 @@ fn discharged(n_edges: usize) -> Discharge {
     let centreline = tight.centreline().unwrap();
     let battery = RodBattery::new(&parameters, &accuracy, Guards::default(), &centreline).unwrap();
     assert!((battery.ropelength() / (2.0 * PI) - 1.0).abs() < 1e-4);
-    let interrupt = Interrupt::new();
     let charged = battery
-        .charge(&ChargeSettings::default(), &interrupt)
+        .charge(&ChargeSettings::default(), &mut RunHooks::default())
         .unwrap();
     let stored = charged.record().samples.last().unwrap();
     // pi B/R for the circle of 50 h, and nothing else
@@ -44,7 +43,7 @@ fn discharged(n_edges: usize) -> Discharge {
     assert_eq!((stored.n_contacts, stored.min_distance), (0, None));
     let run = charged
         .cut(CutSite::MaximumEnergyDensity)
-        .and_then(|cut| cut.discharge(&DischargeSettings::default(), &interrupt))
+        .and_then(|cut| cut.discharge(&DischargeSettings::default(), &mut RunHooks::default()))
         .unwrap();
     assert!(run.is_finished(), "{}", run.record.report.stop);
     assert!((run.start / stored.elastic() - 1.0).abs() < 1e-12);

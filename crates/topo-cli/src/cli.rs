@@ -230,7 +230,7 @@ pub struct RunArgs {
     /// Compute part I of N only; each part may run anywhere.
     #[arg(long, value_name = "I/N")]
     pub shard: Option<Shard>,
-    /// Seconds between checkpoints inside a nematic case.
+    /// Seconds between checkpoints inside a case.
     #[arg(long, value_name = "SECONDS", default_value_t = 25.0)]
     pub checkpoint: f64,
     /// Folder with knots of your own, one TOML file each, besides the built-in ones.

@@ -4,6 +4,7 @@ mod work;
 
 use crate::duration::duration;
 use indicatif::{ProgressBar, ProgressStyle};
+use std::fmt::Display;
 use std::io::IsTerminal;
 use std::sync::{Mutex, MutexGuard};
 use std::time::{Duration, Instant};
@@ -12,6 +13,8 @@ use work::Work;
 
 /// Shortest time between two plain lines.
 const PAUSE: Duration = Duration::from_secs(5);
+/// Shortest time between two messages of the bar about parts at work.
+const SHORT_PAUSE: Duration = Duration::from_millis(100);
 /// Shortest time between two plain lines about a part at work.
 const LONG_PAUSE: Duration = Duration::from_secs(20);
 
@@ -96,17 +99,21 @@ impl Progress {
         }
     }
 
-    /// Where a long part is.
-    pub fn working(&self, what: &str) {
+    /// How far a part at work is; most of what steps report comes too soon after the last and is not even put into words.
+    pub fn working(&self, name: &str, far: &dyn Display) {
         let mut state = self.state();
-        let text = state.text(what);
+        let pause = match self.bar {
+            Some(_) => SHORT_PAUSE,
+            None => LONG_PAUSE,
+        };
+        if state.said.elapsed() < pause {
+            return;
+        }
+        state.said = Instant::now();
+        let text = state.text(&format!("{name}: {far}"));
         match &self.bar {
             Some(bar) => bar.set_message(text),
-            None if state.said.elapsed() >= LONG_PAUSE => {
-                state.said = Instant::now();
-                note!("{}: {}, {text}", self.label, state.work);
-            }
-            None => {}
+            None => note!("{}: {}, {text}", self.label, state.work),
         }
     }
 

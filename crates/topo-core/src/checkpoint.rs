@@ -134,6 +134,15 @@ pub fn parse_checkpoint<T: DeserializeOwned>(
     }
 }
 
+/// Short hash of everything that a case depends on: a checkpoint that holds it is found by its own case only.
+pub fn case_identity<T: Serialize>(all: &T) -> String {
+    match postcard::to_stdvec(all) {
+        Ok(bytes) => blake3::hash(&bytes).to_hex()[..32].to_owned(),
+        // such a case has no checkpoint either
+        Err(error) => error.to_string(),
+    }
+}
+
 struct Reader<'a> {
     rest: &'a [u8],
     path: &'a Path,

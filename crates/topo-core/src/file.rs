@@ -58,6 +58,12 @@ pub enum FileError {
         /// What is wrong.
         what: String,
     },
+    /// The checkpoint belongs to another case.
+    #[error("the checkpoint {} belongs to another case: remove it or use another folder", path.display())]
+    Foreign {
+        /// The file.
+        path: PathBuf,
+    },
     /// The value cannot be written in this format.
     #[error("cannot write {}: {what}", path.display())]
     Unwritable {
@@ -81,6 +87,19 @@ pub enum FileError {
 }
 
 impl FileError {
+    /// Whether a checkpoint that cannot be used is the reason: a run may then begin anew.
+    pub fn is_unusable_checkpoint(&self) -> bool {
+        matches!(
+            self,
+            Self::Truncated { .. }
+                | Self::NotACheckpoint { .. }
+                | Self::Version { .. }
+                | Self::Schema { .. }
+                | Self::Corrupt { .. }
+                | Self::Foreign { .. }
+        )
+    }
+
     pub(crate) fn io(action: &'static str, path: &Path, source: io::Error) -> Self {
         Self::Io {
             action,

@@ -6,7 +6,7 @@ mod rosenbrock;
 #[cfg(test)]
 pub(crate) mod testing;
 
-pub use fire::{Fire, ForceFn, Relaxation, RelaxationEnd, Relaxed};
+pub use fire::{Fire, FireStep, FireSums};
 pub use rkc2::{Rkc2, Rkc2Stage, Rkc2Stages};
 pub use rosenbrock::{GAMMA_L_STABLE_LARGE, GAMMA_L_STABLE_SMALL, RosenbrockW};
 
@@ -138,6 +138,19 @@ pub struct Counters {
     pub n_trials: u64,
 }
 
+/// What a stepper remembers between two steps.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct StepperMemory {
+    /// Work done so far.
+    pub counters: Counters,
+    /// Whether it has tried a step.
+    pub has_begun: bool,
+    /// The rate at the present state, if it is known.
+    pub rate: Option<Vec<f64>>,
+    /// The spectral radius there, if it is known.
+    pub radius: Option<f64>,
+}
+
 /// A one-step method with an embedded error estimate.
 pub trait Stepper<M: Model> {
     /// Tries a step of length `dt` from `state` and writes where it leads to `to`.
@@ -181,4 +194,10 @@ pub trait Stepper<M: Model> {
 
     /// Work done so far.
     fn counters(&self) -> Counters;
+
+    /// What it remembers between two steps.
+    fn memory(&self) -> StepperMemory;
+
+    /// Goes on from what it remembered, for a model of `n_dof` numbers.
+    fn recall(&mut self, memory: StepperMemory, n_dof: usize);
 }

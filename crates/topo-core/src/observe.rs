@@ -1,5 +1,7 @@
 //! Observers, which see a run and never change it, and the schedules that say when.
 
+use serde::{Deserialize, Serialize};
+
 use crate::check::{InvalidValue, finite, non_negative, positive};
 use crate::ledger::Ledger;
 
@@ -63,7 +65,7 @@ impl<S> std::fmt::Debug for Scheduled<'_, S> {
     }
 }
 
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 enum Kind {
     Always,
     EverySteps(u64),
@@ -80,7 +82,7 @@ enum Kind {
 ///
 /// # Validation
 /// `each_kind_is_due_when_it_should_be`
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Schedule {
     kind: Kind,
     exact: bool,
@@ -146,6 +148,11 @@ impl Schedule {
     pub fn exact(mut self) -> Self {
         self.exact = true;
         self
+    }
+
+    /// Whether `later` is this schedule, gone through some way.
+    pub fn leads_to(&self, later: &Self) -> bool {
+        self.kind == later.kind && self.exact == later.exact && self.next <= later.next
     }
 
     /// Whether to look at the state reached at `time` after `step` steps; each step is due once at most.
@@ -244,6 +251,16 @@ mod tests {
     fn a_step_is_seen_once() {
         let mut schedule = Schedule::always();
         assert!(schedule.due(0.0, 0) && !schedule.due(0.0, 0) && schedule.due(1.0, 1));
+    }
+
+    #[test]
+    fn a_schedule_leads_to_its_own_later_self_only() {
+        let fresh = Schedule::log_spaced(1.0, 2.0).unwrap();
+        let mut later = fresh.clone();
+        assert!(later.due(5.0, 3));
+        assert!(fresh.leads_to(&later) && !later.leads_to(&fresh));
+        assert!(!fresh.leads_to(&Schedule::log_spaced(1.0, 3.0).unwrap()));
+        assert!(!fresh.leads_to(&fresh.clone().exact()));
     }
 
     #[test]

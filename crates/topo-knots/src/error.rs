@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
+use crate::TightKnot;
+
 /// Refusals of the knot table, the braid closure, the tightening and the identification.
 #[derive(Debug, Error)]
 #[non_exhaustive]
@@ -175,6 +177,16 @@ pub enum KnotError {
         n_starts: usize,
         /// Reason of the last failure.
         last: String,
+    },
+    /// The tightening was interrupted: nothing is kept of it but this.
+    #[error(
+        "{}: interrupted; the best curve so far has length {:.4} over its radius",
+        best.name,
+        best.length_over_radius
+    )]
+    Interrupted {
+        /// The best curve so far, not converged.
+        best: Box<TightKnot>,
     },
     /// A file of the cache could not be written.
     #[error(transparent)]

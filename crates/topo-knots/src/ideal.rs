@@ -2,9 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use topo_core::{load_checkpoint, save_checkpoint};
+use topo_core::{Interrupt, load_checkpoint, save_checkpoint};
 
-use crate::{KnotEntry, KnotError, TightKnot, TightenSettings, tighten_entry};
+use crate::tighten::mirrored;
+use crate::{KnotEntry, KnotError, TightKnot, TightenSettings, tighten_entry_until};
 
 /// Changes whenever the tightening gives other results, so that older files are not used.
 pub const METHOD_VERSION: u32 = 1;
@@ -26,17 +27,34 @@ pub fn ideal(
     settings: &TightenSettings,
     cache: Option<&Path>,
 ) -> Result<TightKnot, KnotError> {
+    ideal_until(entry, settings, cache, &Interrupt::new())
+}
+
+/// As [`ideal`], but ended early when `interrupt` asks: nothing is kept in the folder then.
+///
+/// # Errors
+/// As [`ideal`], and [`KnotError::Interrupted`] with the best curve so far.
+///
+/// # Validation
+/// `an_interrupted_shape_is_not_kept`
+pub fn ideal_until(
+    entry: &KnotEntry,
+    settings: &TightenSettings,
+    cache: Option<&Path>,
+    interrupt: &Interrupt,
+) -> Result<TightKnot, KnotError> {
     let Some(folder) = cache else {
-        return tighten_entry(entry, settings);
+        return tighten_entry_until(entry, settings, interrupt);
     };
     if entry.is_mirror_image() {
-        return Ok(ideal(&entry.mirror(), settings, cache)?.mirror());
+        let itself = ideal_until(&entry.mirror(), settings, cache, interrupt);
+        return mirrored(itself);
     }
     let path = cache_path(folder, entry, settings);
     if let Ok(tight) = load_checkpoint::<TightKnot>(&path, SCHEMA) {
         return Ok(tight);
     }
-    let tight = tighten_entry(entry, settings)?;
+    let tight = tighten_entry_until(entry, settings, interrupt)?;
     std::fs::create_dir_all(folder).map_err(|source| KnotError::Io {
         path: folder.to_owned(),
         action: "create the folder",
@@ -94,6 +112,24 @@ mod tests {
             load_checkpoint::<TightKnot>(&path, SCHEMA).expect("replaced");
         }
         std::fs::remove_dir_all(&folder).expect("removed");
+    }
+
+    #[test]
+    fn an_interrupted_shape_is_not_kept() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let table = KnotTable::builtin();
+        let settings = TightenSettings::draft();
+        let interrupt = Interrupt::new();
+        interrupt.request();
+        for name in ["3_1", "m3_1"] {
+            let entry = table.get(name).expect("known");
+            let made = ideal_until(&entry, &settings, Some(folder.path()), &interrupt);
+            let Err(KnotError::Interrupted { best }) = made else {
+                panic!("{made:?}")
+            };
+            assert_eq!(best.name, name);
+            assert!(!is_kept(&entry, &settings, folder.path()));
+        }
     }
 
     #[test]

@@ -28,7 +28,7 @@ pub use curve_file::{
     read_components, read_curve, write_curve,
 };
 pub use error::KnotError;
-pub use ideal::{METHOD_VERSION, ideal, is_kept};
+pub use ideal::{METHOD_VERSION, ideal, ideal_until, is_kept};
 pub use identify::{Handedness, KnotType, OpenKnotType, identify, identify_open};
 pub use invariant::{
     Invariants, Jones, alexander_polynomial, determinant, jones_polynomial, signature,
@@ -38,8 +38,8 @@ pub use name::{Factor, KnotName, mirror_name};
 pub use start_file::StartCurve;
 pub use table::{Chirality, KnotEntry, KnotTable};
 pub use tighten::{
-    Certificate, SecondOpinion, TightKnot, TightenSettings, second_opinion, struts, tighten,
-    tighten_by_hops, tighten_entry,
+    Certificate, SecondOpinion, TightKnot, TightenSettings, second_opinion, second_opinion_until,
+    struts, tighten, tighten_by_hops, tighten_by_hops_until, tighten_entry, tighten_entry_until,
 };
 
 pub use topo_core::{Thickness, thickness, thickness_brute_force, windowed_half_distance};

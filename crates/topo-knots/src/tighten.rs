@@ -13,10 +13,11 @@ mod search;
 mod second;
 mod settings;
 mod start;
+mod stop;
 mod struts;
 
 pub use certificate::Certificate;
-pub use second::{SecondOpinion, second_opinion};
+pub use second::{SecondOpinion, second_opinion, second_opinion_until};
 pub use settings::TightenSettings;
 pub use struts::struts;
 
@@ -33,7 +34,9 @@ use crate::{Invariants, KnotEntry, KnotError, closed_braid, mirror_name, thickne
 use check::check_type;
 use level::{LOOSE_REACH, Level, NEAR_REACH, Outcome, tighten_level};
 use start::{MOEBIUS_EDGES, MOEBIUS_STEPS, padded, stabilised};
-use topo_core::CpuClock;
+use stop::Stop;
+pub(crate) use stop::mirrored;
+use topo_core::{CpuClock, Interrupt};
 
 /// Random words that keep the number of strands; further ones get more.
 const N_PADDED: usize = 2;
@@ -110,10 +113,26 @@ pub fn tighten_entry(
     entry: &KnotEntry,
     settings: &TightenSettings,
 ) -> Result<TightKnot, KnotError> {
+    tighten_entry_until(entry, settings, &Interrupt::new())
+}
+
+/// As [`tighten_entry`], but ended early when `interrupt` asks.
+///
+/// # Errors
+/// As [`tighten_entry`], and [`KnotError::Interrupted`] with the best curve so far.
+///
+/// # Validation
+/// `an_interrupted_search_gives_its_best_curve`
+pub fn tighten_entry_until(
+    entry: &KnotEntry,
+    settings: &TightenSettings,
+    interrupt: &Interrupt,
+) -> Result<TightKnot, KnotError> {
     if entry.is_mirror_image() {
-        return Ok(tighten_entry(&entry.mirror(), settings)?.mirror());
+        let itself = tighten_entry_until(&entry.mirror(), settings, interrupt);
+        return mirrored(itself);
     }
-    let clock = CpuClock::start();
+    let (clock, stop) = (CpuClock::start(), Stop::at(interrupt));
     settings.check()?;
     let plain = entry.start_curve()?;
     if entry.is_unknot() {
@@ -152,11 +171,11 @@ pub fn tighten_entry(
         entry.verify(start)?;
     }
     if settings.n_inversions > 0 {
-        starts.extend(inversions(entry, &starts, settings)?);
+        starts.extend(inversions(entry, &starts, settings, &stop)?);
     }
-    let mut tight = tighten(&entry.name, &starts, settings)?;
+    let mut tight = tighten_all(&entry.name, &starts, settings, &stop)?;
     tight.cpu_seconds = clock.seconds();
-    Ok(tight)
+    stop.unless_cut_short(tight)
 }
 
 /// Curves of the walk that go on to the first level: the resolution of the walk does not decide between them.
@@ -177,18 +196,32 @@ pub fn tighten_by_hops(
     n_hops: usize,
     settings: &TightenSettings,
 ) -> Result<TightKnot, KnotError> {
+    tighten_by_hops_until(entry, n_hops, settings, &Interrupt::new())
+}
+
+/// As [`tighten_by_hops`], but ended early when `interrupt` asks.
+///
+/// # Errors
+/// As [`tighten_by_hops`], and [`KnotError::Interrupted`] with the best curve so far.
+pub fn tighten_by_hops_until(
+    entry: &KnotEntry,
+    n_hops: usize,
+    settings: &TightenSettings,
+    interrupt: &Interrupt,
+) -> Result<TightKnot, KnotError> {
     if entry.is_mirror_image() {
-        return Ok(tighten_by_hops(&entry.mirror(), n_hops, settings)?.mirror());
+        let itself = tighten_by_hops_until(&entry.mirror(), n_hops, settings, interrupt);
+        return mirrored(itself);
     }
-    let clock = CpuClock::start();
+    let (clock, stop) = (CpuClock::start(), Stop::at(interrupt));
     settings.check()?;
     let kind = entry.verify(&closed_braid(&entry.braid)?)?;
-    let (met, n_factorisations) = hops::hop(entry, &kind, n_hops, settings)?;
+    let (met, n_factorisations) = hops::hop(entry, &kind, n_hops, settings, &stop)?;
     let curves = met.into_iter().take(N_MET).map(|o| o.curve).collect();
-    let mut tight = refine_all(&entry.name, curves, &kind, settings)?;
+    let mut tight = refine_all(&entry.name, curves, &kind, settings, &stop)?;
     tight.n_factorisations += n_factorisations;
     tight.cpu_seconds = clock.seconds();
-    Ok(tight)
+    stop.unless_cut_short(tight)
 }
 
 /// The tight unknot: the regular polygon on a circle.
@@ -215,17 +248,21 @@ fn inversions(
     entry: &KnotEntry,
     starts: &[Polyline],
     settings: &TightenSettings,
+    stop: &Stop,
 ) -> Result<Vec<Polyline>, KnotError> {
     let coarse = TightenSettings {
         per_unit: LEAST_PER_UNIT,
         n_kicks: 0,
         ..*settings
     };
-    let tight = tighten(&entry.name, starts, &coarse)?;
+    let tight = tighten_all(&entry.name, starts, &coarse, stop)?;
     let round = relax_moebius(&tight.curve, MOEBIUS_EDGES[0], MOEBIUS_STEPS)?;
     let mut rng = Pcg64::seed_from_u64(settings.seed);
     let mut found = Vec::new();
     for _ in 0..settings.n_inversions {
+        if stop.asks() {
+            break;
+        }
         if let Some(curve) = inverted(&round, &mut rng)?
             && entry.verify(&curve).is_ok()
         {
@@ -251,6 +288,16 @@ pub fn tighten(
     starts: &[Polyline],
     settings: &TightenSettings,
 ) -> Result<TightKnot, KnotError> {
+    tighten_all(name, starts, settings, &Stop::default())
+}
+
+/// As [`tighten`]; cut short, it gives the best curve so far.
+fn tighten_all(
+    name: &str,
+    starts: &[Polyline],
+    settings: &TightenSettings,
+    stop: &Stop,
+) -> Result<TightKnot, KnotError> {
     let clock = CpuClock::start();
     settings.check()?;
     let Some(first) = starts.first() else {
@@ -261,10 +308,10 @@ pub fn tighten(
         });
     };
     let kind = Invariants::of(first.vertices())?;
-    let (found, n_factorisations) = search::search(name, starts, &kind, settings)?;
+    let (found, n_factorisations) = search::search(name, starts, &kind, settings, stop)?;
     let finalists = found.into_iter().take(settings.n_finalists());
     let curves = finalists.map(|outcome| outcome.curve).collect();
-    let mut tight = refine_all(name, curves, &kind, settings)?;
+    let mut tight = refine_all(name, curves, &kind, settings, stop)?;
     tight.n_factorisations += n_factorisations;
     tight.cpu_seconds = clock.seconds();
     Ok(tight)
@@ -276,12 +323,17 @@ fn refine_all(
     mut curves: Vec<Polyline>,
     kind: &Invariants,
     settings: &TightenSettings,
+    stop: &Stop,
 ) -> Result<TightKnot, KnotError> {
     let (mut n_factorisations, mut converged) = (0, false);
     for per_unit in settings.levels() {
+        if stop.asks() {
+            converged = false;
+            break;
+        }
         let mut finer: Vec<Outcome> = Vec::new();
         for curve in &curves {
-            let outcome = refine(curve, per_unit, settings)?
+            let outcome = refine(curve, per_unit, settings, stop)?
                 .filter(|outcome| check_type(name, &outcome.curve, kind, "tightening").is_ok());
             n_factorisations += outcome.as_ref().map_or(0, |o| o.n_factorisations);
             finer.extend(outcome);
@@ -295,6 +347,11 @@ fn refine_all(
             converged = false;
             break;
         };
+        // a level that was cut short need not have come below what it started from
+        if stop.asks() && curves[0].ropelength() < best.ropelength {
+            converged = false;
+            break;
+        }
         converged = best.converged;
         curves = vec![best.curve];
     }
@@ -316,6 +373,7 @@ fn refine(
     curve: &Polyline,
     per_unit: f64,
     settings: &TightenSettings,
+    stop: &Stop,
 ) -> Result<Option<Outcome>, KnotError> {
     let n = ((per_unit * curve.length() / thickness(curve).tau).round() as usize).max(16);
     let is_last = per_unit == settings.per_unit;
@@ -339,7 +397,7 @@ fn refine(
     } else {
         curve.resampled(n)?
     };
-    Ok(tighten_level(&start, &level))
+    Ok(tighten_level(&start, &level, stop))
 }
 
 /// A tight curve at more vertices, smoothed: the spline sharpens some so much that the whole curve would have to grow.

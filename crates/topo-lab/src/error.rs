@@ -91,6 +91,14 @@ pub enum LabError {
     /// A knot is unknown, or its shape cannot be had.
     #[error(transparent)]
     Knot(#[from] topo_knots::KnotError),
+    /// A quantity of the caller's own cannot be a column.
+    #[error("observable {name}: {reason}")]
+    Observable {
+        /// Its name.
+        name: String,
+        /// Why, or what would be right.
+        reason: String,
+    },
     /// A knot has no start shape.
     #[error("{knot} has no tight shape: {reason}")]
     Shape {
@@ -139,10 +147,31 @@ impl LabError {
     /// Whether a case is refused for what it is, so that others can go on.
     pub(crate) fn is_of_one_case(&self) -> bool {
         match self {
-            Self::Case { .. } | Self::Rod { .. } | Self::Knot(_) | Self::Shape { .. } => true,
+            Self::Case { .. } | Self::Knot(_) | Self::Shape { .. } => true,
             Self::Analysis(source) => matches!(source, topo_analysis::AnalysisError::Knot(_)),
-            Self::Nematic { source, .. } => !matches!(source, topo_nematic::NematicError::File(_)),
+            Self::Rod { .. } | Self::Nematic { .. } => self.file().is_none(),
             _ => false,
+        }
+    }
+
+    /// Whether a checkpoint that cannot be used is the reason.
+    pub(crate) fn is_unusable_checkpoint(&self) -> bool {
+        self.file()
+            .is_some_and(topo_core::FileError::is_unusable_checkpoint)
+    }
+
+    /// What was wrong with a file of a battery.
+    fn file(&self) -> Option<&topo_core::FileError> {
+        match self {
+            Self::Nematic {
+                source: topo_nematic::NematicError::File(error),
+                ..
+            }
+            | Self::Rod {
+                source: topo_rod::RodError::File(error),
+                ..
+            } => Some(error),
+            _ => None,
         }
     }
 }

@@ -6,7 +6,9 @@ use std::path::Path;
 
 use rayon::prelude::*;
 use topo_core::{Interrupt, Snapshot};
-use topo_knots::{KnotEntry, KnotTable, TightKnot, TightenSettings, ideal, is_kept};
+use topo_knots::{
+    KnotEntry, KnotError, KnotTable, TightKnot, TightenSettings, ideal_until, is_kept,
+};
 
 use crate::LabError;
 use crate::cost::{Cost, Estimate, Speed, estimate, threads};
@@ -44,7 +46,10 @@ pub fn tight_shapes(
             if interrupt.is_requested() {
                 return Ok(None);
             }
-            let tight = ideal(entry, settings, Some(&cache))?;
+            let tight = match ideal_until(entry, settings, Some(&cache), interrupt) {
+                Err(KnotError::Interrupted { .. }) => return Ok(None),
+                made => made?,
+            };
             progress(Event::Knot {
                 name: &entry.name,
                 length_over_radius: tight.length_over_radius,

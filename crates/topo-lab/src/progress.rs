@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-use topo_core::Interrupt;
+use topo_core::{Interrupt, Progress};
 
 use crate::LabError;
 use crate::cost::Estimate;
@@ -35,7 +35,14 @@ pub enum Event<'a> {
         /// Its ropelength.
         length_over_radius: f64,
     },
-    /// A case is at work; told often by long ones.
+    /// A case is at work, so far; reported at every step or every few steps.
+    Progress {
+        /// Its name.
+        name: &'a str,
+        /// How far it is.
+        progress: &'a Progress,
+    },
+    /// A case is at work, in words; reported often by long ones.
     Working {
         /// Its name.
         name: &'a str,
@@ -72,7 +79,7 @@ pub struct SweepSettings {
     pub only_finished: bool,
     /// Keep the whole nematic field at each time looked at, for other tools; tables do not need it.
     pub keep_fields: bool,
-    /// Seconds between checkpoints inside a nematic case: a killed run loses at most about that.
+    /// Seconds between checkpoints inside a case: a killed run loses at most about that.
     pub checkpoint_seconds: f64,
 }
 

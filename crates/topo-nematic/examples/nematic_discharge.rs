@@ -7,10 +7,11 @@
 use std::time::Instant;
 
 use topo_core::Interrupt;
+use topo_core::Progress;
 use topo_nematic::{
     ChargeSettings, ChargedNematic, Discharge, DischargeSettings, FlowParameters, FreeSurface,
-    NematicAccuracy, NematicBattery, NematicError, NematicParameters, Progress, RunHooks,
-    SurfacePattern, SwitchSettings, SwitchTarget,
+    NematicAccuracy, NematicBattery, NematicError, NematicParameters, RunHooks, SurfacePattern,
+    SwitchSettings, SwitchTarget,
 };
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -78,7 +79,7 @@ fn charge_from(battery: &NematicBattery, seed: f64) -> Result<ChargedNematic, Ne
     let clock = Instant::now();
     let mut show = |p: &Progress| {
         if std::env::var_os("TOPO_VERBOSE").is_some() {
-            println!("  step {:5}  rms H {:.2e}", p.step, p.rms_field);
+            println!("  {p}");
         }
     };
     let mut hooks = RunHooks::new(&interrupt).with_progress(&mut show);
@@ -111,13 +112,13 @@ fn print_run(run: &Discharge, clock: Instant) {
         report.stop,
         clock.elapsed().as_secs_f64()
     );
-    if let Some(flow) = report.flow {
+    if let Some(flow) = report.own.flow {
         println!(
             "flow:       {} updates, {:?}, largest speed {:.2e}",
             flow.counters.n_updates, flow.counters, flow.max_speed
         );
     }
-    println!("bytes:      {:?}", report.bytes);
+    println!("bytes:      {:?}", report.own.bytes);
 }
 
 /// Times at which shares of the energy are released, in the diffusion time.

@@ -115,14 +115,8 @@ pub enum NematicError {
     },
     /// The flow could not be set up or solved.
     #[error(transparent)]
-    Flow(#[from] crate::StokesError),
+    Flow(#[from] crate::stokes::StokesError),
     /// A checkpoint could not be written or read.
     #[error(transparent)]
     File(#[from] FileError),
-    /// A checkpoint belongs to another case.
-    #[error("the checkpoint {path} belongs to another case: remove it or use another folder")]
-    ForeignCheckpoint {
-        /// The file.
-        path: String,
-    },
 }

@@ -8,11 +8,14 @@ use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use topo_analysis::{DischargeTimes, NEMATIC_SHARES};
-use topo_core::Interrupt;
+use topo_core::{Interrupt, Phase, Progress};
+use topo_nematic::flow::FlowCoupling;
+use topo_nematic::record::NematicSample;
+use topo_nematic::ring::ring_line;
 use topo_nematic::{
-    ChargeSettings, ChargedNematic, DischargeSettings, EnergyParts, FlowCoupling, FlowParameters,
-    NematicAccuracy, NematicBattery, NematicParameters, NematicSample, NematicState, Phase,
-    Progress, RunHooks, SwitchSettings, Threads, director_field, order_field, ring_line,
+    ChargeSettings, ChargedNematic, DischargeSettings, EnergyParts, FlowParameters,
+    NematicAccuracy, NematicBattery, NematicParameters, NematicState, RunHooks, SwitchSettings,
+    Threads,
 };
 
 use crate::attend::{Leave, Teller, attend};
@@ -262,7 +265,7 @@ fn discharged<'py>(
     said.set_item("n_steps", report.n_steps)?;
     said.set_item("n_rejected", report.rejections.total())?;
     said.set_item("ledger_residual", report.ledger_residual)?;
-    said.set_item("max_speed", report.flow.map(|f| f.max_speed))?;
+    said.set_item("max_speed", report.own.flow.as_ref().map(|f| f.max_speed))?;
     let ends = [run.start, run.final_state.energy];
     let times = DischargeTimes::between(&record.curve, &EnergyParts::NAMES, ends, &NEMATIC_SHARES);
     said.set_item(
@@ -311,8 +314,8 @@ fn fields<'py>(py: Python<'py>, state: &NematicState) -> PyResult<Bound<'py, PyD
                 fluid.extend((0..nx).map(|i| state.is_fluid([i, j, k])));
             }
         }
-        let director: Vec<f64> = director_field(state).into_iter().flatten().collect();
-        (order_field(state), director, fluid)
+        let director: Vec<f64> = state.director_field().into_iter().flatten().collect();
+        (state.order_field(), director, fluid)
     });
     let said = PyDict::new(py);
     let shape = (nz, ny, nx);

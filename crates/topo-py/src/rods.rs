@@ -7,7 +7,7 @@ use pyo3::types::PyDict;
 use topo_analysis::{DischargeTimes, ELASTIC_SHARES};
 use topo_core::{DischargeCurve, StopReason};
 use topo_lab::{ElasticScene, Preset, perturbed};
-use topo_rod::{CutSite, Guards, PhaseReport, RodSample, RodState, RunRecord};
+use topo_rod::{CutSite, Guards, PhaseReport, RodSample, RodState, RunHooks, RunRecord};
 
 use crate::attend::quietly;
 use crate::curves::{polyline, rows};
@@ -89,7 +89,7 @@ impl RodBattery {
     fn charge(&self, py: Python<'_>, given: &Bound<'_, PyDict>) -> PyResult<ChargedRod> {
         let settings = settings(&self.scene.charge, given)?;
         let battery = self.battery.clone();
-        let work = move |stop: &_| Ok(battery.charge(&settings, stop)?);
+        let work = move |stop: &_| Ok(battery.charge(&settings, &mut RunHooks::new(stop))?);
         let charged = quietly(py, work)?;
         let scene = self.scene.clone();
         Ok(ChargedRod { charged, scene })
@@ -169,14 +169,16 @@ impl CutRod {
     ) -> PyResult<Bound<'py, PyDict>> {
         let settings = settings(&self.scene.discharge, given)?;
         let cut = self.cut.clone();
-        let run = quietly(py, move |stop| Ok(cut.discharge(&settings, stop)?))?;
+        let work = move |stop: &_| Ok(cut.discharge(&settings, &mut RunHooks::new(stop))?);
+        let run = quietly(py, work)?;
         let said = record(py, &run.record, self.cut.charged.battery())?;
         said.set_item("at", run.at)?;
         said.set_item("removed", run.removed)?;
         said.set_item("start", run.start)?;
         said.set_item("after_cut", run.after_cut)?;
         said.set_item("parted", run.parted)?;
-        let times = times(&run.record.curve, &run.record.parts.elastic(), run.start);
+        let parts = run.record.report.own.parts.elastic();
+        let times = times(&run.record.curve, &parts, run.start);
         said.set_item(
             "times",
             ELASTIC_SHARES.map(|share| (share, times.at(share).map(|t| t.value))),
@@ -248,7 +250,7 @@ fn record<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let said = PyDict::new(py);
     curve(py, &record.curve, &said)?;
-    let parts = record.parts.elastic();
+    let parts = record.report.own.parts.elastic();
     let columns: Vec<&[f64]> = parts
         .iter()
         .filter_map(|p| record.curve.series(p))
@@ -261,16 +263,15 @@ fn record<'py>(
         n_steps,
         rejections,
         ledger_residual,
-        min_distance_over_contact,
-        link_drift,
+        own,
         ..
     } = &record.report;
     stop(&said, &record.report.stop)?;
     said.set_item("n_steps", n_steps)?;
     said.set_item("n_rejected", rejections.total())?;
     said.set_item("ledger_residual", ledger_residual)?;
-    said.set_item("min_distance_over_contact", min_distance_over_contact)?;
-    said.set_item("link_drift", link_drift)?;
+    said.set_item("min_distance_over_contact", own.min_distance_over_contact)?;
+    said.set_item("link_drift", own.link_drift)?;
     Ok(said)
 }
 

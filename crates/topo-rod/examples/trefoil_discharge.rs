@@ -7,7 +7,7 @@
 use std::time::Instant;
 
 use nalgebra::Vector3;
-use topo_core::{Interrupt, Polyline};
+use topo_core::{Polyline, RunHooks};
 use topo_rod::{
     Accuracy, ChargeSettings, ChargedRod, CutSite, Discharge, DischargeSettings, Guards,
     RodBattery, RodParameters,
@@ -34,12 +34,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
     let battery = RodBattery::new(&parameters, &accuracy, Guards::default(), &curve)?;
     let clock = Instant::now();
-    let charged = battery.charge(&ChargeSettings::default(), &Interrupt::new())?;
+    let charged = battery.charge(&ChargeSettings::default(), &mut RunHooks::default())?;
     print_charge(&charged, clock)?;
     let clock = Instant::now();
     let run = charged
         .cut(CutSite::MaximumEnergyDensity)?
-        .discharge(&DischargeSettings::default(), &Interrupt::new())?;
+        .discharge(&DischargeSettings::default(), &mut RunHooks::default())?;
     print_discharge(&run, clock);
     Ok(())
 }
@@ -70,11 +70,11 @@ fn print_charge(charged: &ChargedRod, clock: Instant) -> Result<(), &'static str
         last.total_twist,
         report.n_steps,
         report.rejections.total(),
-        report.link_drift.unwrap_or(0.0),
+        report.own.link_drift.unwrap_or(0.0),
         report.stop,
         clock.elapsed().as_secs_f64()
     );
-    println!("  {:?}", report.work);
+    println!("  {:?}", report.own.work);
     println!("  {:?}", report.rejections);
     Ok(())
 }
@@ -86,11 +86,11 @@ fn print_discharge(run: &Discharge, clock: Instant) {
         report.n_steps,
         report.rejections.total(),
         report.ledger_residual,
-        report.min_distance_over_contact,
+        report.own.min_distance_over_contact,
         report.stop,
         clock.elapsed().as_secs_f64()
     );
-    println!("  {:?}", report.work);
+    println!("  {:?}", report.own.work);
     println!("  {:?}", report.rejections);
     println!(
         "  parted {:?}, cut removed {:.4}",

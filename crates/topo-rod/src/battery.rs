@@ -3,19 +3,18 @@
 pub(crate) mod charge;
 pub(crate) mod cut;
 pub(crate) mod discharge;
+pub(crate) mod hooks;
+mod phase;
+pub(crate) mod protocol;
 pub(crate) mod record;
+mod simulation;
 mod tips;
 
-use topo_core::{
-    Polyline, Rkc2, RosenbrockW, Sample, Scheduled, Simulation, StepControl, StopReason,
-};
+use topo_core::Polyline;
 
 use crate::contact::ContactPairs;
 use crate::energy::{At, EnergyTerm, TermFactory, terms_of};
-use crate::{
-    Accuracy, Ends, Geometry, Guards, IntegratorKind, RodError, RodModel, RodParameters, RodState,
-    Tube,
-};
+use crate::{Accuracy, Ends, Geometry, Guards, RodError, RodModel, RodParameters, RodState, Tube};
 
 /// A tied fibre, ready to be twisted, fused and charged.
 #[derive(Debug, Clone)]
@@ -35,8 +34,6 @@ pub struct RodBattery {
 impl RodBattery {
     /// Farthest displacement of a disturbed start, in h, with room for rounding.
     const FARTHEST: f64 = 0.5 + 1e-9;
-    /// Least length of a step, relative to the time T_0.
-    const LEAST_STEP: f64 = 1e-12;
 
     /// Edges at which the ropelength is measured: contact diameters must not depend on the edges of the rod.
     const FINE_EDGES: usize = 800;
@@ -224,97 +221,6 @@ fn start_of(
 ) -> Result<RodState, RodError> {
     let curve = centreline.scaled(tube.start_length / centreline.length())?;
     RodState::new(&curve, tube.length, parameters.twist.unwrap_or(0.0))
-}
-
-/// A simulation of a rod with either integrator.
-pub(crate) enum RodSimulation {
-    Rosenbrock(Box<Simulation<RodModel, RosenbrockW>>),
-    Rkc2(Box<Simulation<RodModel, Rkc2>>),
-}
-
-/// Runs an expression on whichever simulation it is.
-macro_rules! on_either {
-    ($self:expr, $sim:ident => $body:expr) => {
-        match $self {
-            RodSimulation::Rosenbrock($sim) => $body,
-            RodSimulation::Rkc2($sim) => $body,
-        }
-    };
-}
-
-impl RodSimulation {
-    pub(crate) fn new(
-        model: RodModel,
-        state: RodState,
-        accuracy: &Accuracy,
-        interrupt: &topo_core::Interrupt,
-    ) -> Result<Self, RodError> {
-        let t0 = topo_core::reference_time(state.length());
-        let control = StepControl::new(accuracy.tolerance, 1e-5 * t0)?
-            .with_limits(RodBattery::LEAST_STEP * t0, 10.0 * t0)?
-            .with_max_trials(accuracy.max_steps);
-        let interrupt = interrupt.clone();
-        let rosenbrock = match accuracy.integrator {
-            IntegratorKind::Ros34pw2 => RosenbrockW::ros34pw2(),
-            IntegratorKind::Ros2w => RosenbrockW::ros2w(accuracy.gamma)?,
-            IntegratorKind::Rkc2 => {
-                let simulation = Simulation::new(model, state, Rkc2::default(), control);
-                return Ok(Self::Rkc2(Box::new(simulation.with_interrupt(interrupt))));
-            }
-        };
-        let simulation = Simulation::new(model, state, rosenbrock, control);
-        Ok(Self::Rosenbrock(Box::new(
-            simulation.with_interrupt(interrupt),
-        )))
-    }
-
-    pub(crate) fn run(
-        &mut self,
-        until: f64,
-        observers: &mut [Scheduled<'_, RodState>],
-        stop: &mut dyn FnMut(&Sample<'_, RodState>) -> Option<String>,
-    ) -> StopReason {
-        on_either!(self, s => s.run(until, observers, stop))
-    }
-
-    pub(crate) fn model(&self) -> &RodModel {
-        on_either!(self, s => s.model())
-    }
-
-    pub(crate) fn state(&self) -> &RodState {
-        on_either!(self, s => s.state())
-    }
-
-    pub(crate) fn modify<R>(
-        &mut self,
-        change: impl FnOnce(&mut RodModel, &mut RodState) -> R,
-    ) -> R {
-        on_either!(self, s => s.modify(change))
-    }
-
-    pub(crate) fn sample(&self) -> Sample<'_, RodState> {
-        on_either!(self, s => s.sample())
-    }
-
-    pub(crate) fn time(&self) -> f64 {
-        on_either!(self, s => s.time())
-    }
-
-    pub(crate) fn n_steps(&self) -> u64 {
-        on_either!(self, s => s.n_steps())
-    }
-
-    pub(crate) fn rejections(&self) -> &topo_core::RejectionCounts {
-        on_either!(self, s => s.rejections())
-    }
-
-    pub(crate) fn counters(&self) -> topo_core::Counters {
-        on_either!(self, s => s.counters())
-    }
-
-    pub(crate) fn into_state(self) -> RodState {
-        on_either!(self, s => s.into_parts().1)
-    }
 }
 
 #[cfg(test)]

@@ -11,6 +11,7 @@ pub(crate) use self::core::Core;
 pub use self::core::CorePair;
 pub use broad_phase::{BroadPhase, close_pairs};
 pub(crate) use known::KnownPairs;
+pub(crate) use pairs::PairsMemory;
 pub use pairs::{ActivePair, ContactPairs};
 pub use segments::segment_distance;
 pub use window::{Window, arc_separation};

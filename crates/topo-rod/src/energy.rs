@@ -27,6 +27,7 @@ pub use stretch::Stretch;
 pub use twist::Twist;
 
 use nalgebra::{Matrix3, Vector3};
+use serde::{Deserialize, Serialize};
 
 use crate::contact::ContactPairs;
 use crate::{Geometry, RodState};
@@ -54,7 +55,7 @@ impl At<'_> {
 }
 
 /// Generalised force −∂e/∂(x, θ): a vector a vertex, a torque an edge.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Force {
     /// −∂e/∂x_i, one a vertex.
     pub vertex: Vec<Vector3<f64>>,

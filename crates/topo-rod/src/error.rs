@@ -1,10 +1,10 @@
 //! What can be wrong with a rod before a run starts.
 
 use thiserror::Error;
-use topo_core::{CurveError, InvalidValue};
+use topo_core::{CurveError, FileError, InvalidValue};
 
 /// A rod, its parameters or its protocol cannot be built as asked.
-#[derive(Debug, Clone, PartialEq, Error)]
+#[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum RodError {
     /// A number is out of its range.
@@ -74,6 +74,9 @@ pub enum RodError {
     /// The start state has no finite energy.
     #[error("the rod cannot start: {0}")]
     Start(#[from] topo_core::Rejection),
+    /// A checkpoint could not be written or read.
+    #[error(transparent)]
+    File(#[from] FileError),
     /// The cut is outside of the rod.
     #[error("cut at s/L = {at} is not on the rod: use a number in [0, 1)")]
     CutSite {

@@ -28,7 +28,9 @@ pub use battery::RodBattery;
 pub use battery::charge::{ChargeSettings, ChargedRod};
 pub use battery::cut::{CutCandidate, CutRod, CutSite, cut_candidates};
 pub use battery::discharge::{Discharge, DischargeSettings};
-pub use battery::record::{PhaseReport, RodSample, RunRecord};
+pub use battery::hooks::RunHooks;
+pub use battery::protocol::Protocol;
+pub use battery::record::{PhaseReport, RodPhase, RodSample, RunRecord};
 pub use circle::{cut_circle_energy, cut_circle_time};
 pub use density::smoothed_density;
 pub use ends::{EndCondition, EndMotion, Ends};
@@ -36,6 +38,7 @@ pub use error::RodError;
 pub use geometry::Geometry;
 pub use guard::Guards;
 pub use model::{RodModel, WorkAccount};
+pub use nalgebra::{Matrix3, Vector3};
 pub use parameters::{
     Accuracy, ContactParameters, FrictionParameters, FrictionRange, IntegratorKind, Reading,
     RodParameters, Tube,

@@ -3,6 +3,7 @@
 mod account;
 mod expected;
 mod implicit;
+mod memory;
 mod parts;
 
 pub use account::WorkAccount;
@@ -24,6 +25,9 @@ use crate::{Accuracy, Ends, Geometry, Guards, RodError, RodParameters, RodState,
 use expected::Expected;
 use parts::{Accepted, Frozen, unsolvable};
 
+pub(crate) use memory::ModelMemory;
+#[cfg(test)]
+pub(crate) use memory::PARTS;
 pub(crate) use parts::CHANNELS;
 
 /// Terms, mobility, guards and ledger of one rod.

@@ -1,6 +1,7 @@
 //! The matrix of the linearly implicit steps, η K + η_f C + s H, on the centreline.
 
 use nalgebra::{Matrix3, Vector3};
+use serde::{Deserialize, Serialize};
 use topo_sparse::{SparseCholesky, SparseError};
 
 use crate::contact::{ContactPairs, KnownPairs};
@@ -28,7 +29,77 @@ pub(crate) struct NewtonMatrix {
     pub n_factorisations: u64,
 }
 
+/// What the matrix remembers: the pairs of its pattern, and the values of the factor in use.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(crate) struct NewtonMemory {
+    pub(crate) pairs: KnownPairs,
+    has_pattern: bool,
+    pub(crate) factor: Option<FactorMemory>,
+    n_patterns: u64,
+    n_factorisations: u64,
+}
+
+/// A matrix of an earlier state that still serves.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(crate) struct FactorMemory {
+    values: Vec<f64>,
+    couplings: Vec<(u32, u32, f64)>,
+    driven: Vec<(usize, usize, Matrix3<f64>)>,
+}
+
+impl FactorMemory {
+    /// Whether it is that of a rod of `n` vertices; values that are not finite are refused when they are factorised.
+    pub(crate) fn is_of(&self, n: usize) -> bool {
+        let of_rod = |&(i, j, c): &(u32, u32, f64)| (i.max(j) as usize) < n && c.is_finite();
+        let free_and_held = |d: &(usize, usize, Matrix3<f64>)| d.0.max(d.1) < n;
+        self.couplings.iter().all(of_rod) && self.driven.iter().all(free_and_held)
+    }
+}
+
 impl NewtonMatrix {
+    /// What it remembers, with its factor if that is in use.
+    pub(crate) fn memory(&self, is_in_use: bool) -> NewtonMemory {
+        let factor = |solver: &SparseCholesky| FactorMemory {
+            values: solver.values().to_vec(),
+            couplings: self.couplings.clone(),
+            driven: self.driven.clone(),
+        };
+        NewtonMemory {
+            pairs: self.pairs.clone(),
+            has_pattern: self.solver.is_some(),
+            factor: self.solver.as_ref().filter(|_| is_in_use).map(factor),
+            n_patterns: self.n_patterns,
+            n_factorisations: self.n_factorisations,
+        }
+    }
+
+    /// Makes pattern and factor again that were remembered; false if they do not fit each other.
+    pub(crate) fn recall(
+        &mut self,
+        state: &RodState,
+        memory: NewtonMemory,
+    ) -> Result<bool, SparseError> {
+        self.pairs = memory.pairs;
+        if memory.has_pattern {
+            self.build_pattern(state)?;
+        }
+        if let Some(factor) = memory.factor {
+            let Some(solver) = self.solver.as_mut() else {
+                return Ok(false);
+            };
+            if factor.values.len() != solver.n_nonzeros() {
+                return Ok(false);
+            }
+            solver.values_mut().copy_from_slice(&factor.values);
+            solver.factor()?;
+            (self.couplings, self.driven) = (factor.couplings, factor.driven);
+            self.chain = state.chain();
+        }
+        self.n_patterns = memory.n_patterns;
+        self.n_factorisations = memory.n_factorisations;
+        Ok(true)
+    }
+
     pub(crate) fn new(fixed: Vec<bool>) -> Self {
         let floating = !fixed.iter().any(|&f| f);
         Self {
@@ -123,7 +194,11 @@ impl NewtonMatrix {
             add(3 * n + place, (i, j), identity(-c), false);
         }
         // a rod that its own terms may hold as a whole is grounded just enough to be solved for
-        let ground = if self.is_tethered { LOOSE_GROUND * viscous } else { viscous };
+        let ground = if self.is_tethered {
+            LOOSE_GROUND * viscous
+        } else {
+            viscous
+        };
         hold(values, &self.blocks, &self.fixed, self.floating, ground);
         self.n_factorisations += 1;
         solver.factor()
@@ -268,7 +343,52 @@ pub(crate) struct NewtonTwist {
     work: Vec<f64>,
 }
 
+/// What the twist matrix remembers: of what it was made.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(crate) struct NewtonTwistMemory {
+    cosine: Vec<f64>,
+    stiffness: f64,
+    n_factorisations: Option<u64>,
+}
+
+impl NewtonTwistMemory {
+    /// Whether it is that of a rod of `n` vertices; values that are not finite are refused when they are factorised.
+    pub(crate) fn is_of(&self, n: usize) -> bool {
+        self.cosine.len()
+            == if self.n_factorisations.is_some() {
+                n
+            } else {
+                0
+            }
+    }
+}
+
 impl NewtonTwist {
+    /// What it remembers.
+    pub(crate) fn memory(&self) -> NewtonTwistMemory {
+        NewtonTwistMemory {
+            cosine: self.cosine.clone(),
+            stiffness: self.stiffness,
+            n_factorisations: self.viscosity.memory(),
+        }
+    }
+
+    /// Makes the matrix again that was remembered.
+    pub(crate) fn recall(
+        &mut self,
+        chain: Chain,
+        memory: NewtonTwistMemory,
+    ) -> Result<(), SparseError> {
+        if memory.n_factorisations.is_some() {
+            self.chain = chain;
+            self.stiffness = memory.stiffness;
+            self.work = vec![0.0; chain.n_edges()];
+        }
+        self.cosine = memory.cosine;
+        self.viscosity
+            .recall(chain, &self.cosine, self.stiffness, memory.n_factorisations)
+    }
+
     pub(crate) fn new(held: Vec<bool>) -> Self {
         let viscosity = TwistViscosity::new(held.clone());
         Self {

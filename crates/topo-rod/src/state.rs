@@ -175,6 +175,23 @@ impl RodState {
         }
     }
 
+    /// The same rod with its vertices elsewhere.
+    pub(crate) fn with_vertices(&self, vertices: Vec<Vector3<f64>>) -> Self {
+        Self {
+            vertices,
+            ..self.clone()
+        }
+    }
+
+    /// Whether it is a rod joined like `chain`, all of whose numbers are finite.
+    pub(crate) fn is_sound(&self, chain: Chain) -> bool {
+        let n = chain.n_vertices;
+        self.chain == chain
+            && (self.vertices.len(), self.twists.len()) == (n, n)
+            && self.vertices.iter().flatten().all(|x| x.is_finite())
+            && self.twists.iter().all(|x| x.is_finite())
+    }
+
     /// Identity of the numbers held: equal stamps mean equal states within one model.
     pub(crate) fn stamp(&self) -> u64 {
         self.stamp

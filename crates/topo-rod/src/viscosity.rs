@@ -3,6 +3,7 @@
 //! The damping is internal, so a translation costs nothing: one vertex is grounded, which for a balanced force is the exact
 //! solution with that vertex at rest, and the mean velocity is then removed.
 
+use serde::{Deserialize, Serialize};
 use topo_sparse::{SparseCholesky, SparseError};
 
 use crate::contact::{ContactPairs, KnownPairs};
@@ -27,7 +28,46 @@ pub struct CentrelineViscosity {
     n_factorisations: u64,
 }
 
+/// What the mobility remembers of its patterns.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(crate) struct MobilityMemory {
+    pub(crate) pairs: KnownPairs,
+    has_pattern: bool,
+    n_patterns: u64,
+    n_factorisations: u64,
+}
+
 impl CentrelineViscosity {
+    /// What it remembers: without friction its matrix is constant, with friction it is made anew at every state.
+    pub(crate) fn memory(&self) -> MobilityMemory {
+        MobilityMemory {
+            pairs: self.pairs.clone(),
+            has_pattern: self.solver.is_some(),
+            n_patterns: self.n_patterns,
+            n_factorisations: self.n_factorisations,
+        }
+    }
+
+    /// Makes the pattern again that was remembered, and the matrix where it is constant.
+    pub(crate) fn recall(
+        &mut self,
+        state: &RodState,
+        pairs: &ContactPairs,
+        friction: Option<Friction>,
+        memory: MobilityMemory,
+    ) -> Result<(), SparseError> {
+        self.pairs = memory.pairs;
+        if memory.has_pattern {
+            self.build_pattern(state.chain())?;
+            if friction.is_none() {
+                self.prepare(state, pairs, None)?;
+            }
+        }
+        self.n_patterns = memory.n_patterns;
+        self.n_factorisations = memory.n_factorisations;
+        Ok(())
+    }
+
     /// For a rod whose vertices marked in `fixed` have a prescribed velocity.
     pub fn new(fixed: Vec<bool>) -> Self {
         let grounded = !fixed.iter().any(|&f| f);
@@ -67,6 +107,23 @@ impl CentrelineViscosity {
         self.n_patterns
     }
 
+    /// Finds a pattern of entries, unless that at hand serves.
+    fn keep_pattern(
+        &mut self,
+        state: &RodState,
+        pairs: &ContactPairs,
+        rubs: bool,
+    ) -> Result<(), SparseError> {
+        let (n, none) = (state.n_vertices(), std::iter::empty);
+        if self.solver.is_none() || rubs && !self.pairs.serve(n, pairs.active(), none()) {
+            if rubs {
+                self.pairs.renew(state, pairs, none());
+            }
+            self.build_pattern(state.chain())?;
+        }
+        Ok(())
+    }
+
     /// Assembles and factorises the matrix at a state. Without friction it is constant and factorised once.
     pub fn prepare(
         &mut self,
@@ -75,14 +132,8 @@ impl CentrelineViscosity {
         friction: Option<Friction>,
     ) -> Result<(), SparseError> {
         let chain = state.chain();
-        let (n, none) = (chain.n_vertices(), std::iter::empty);
         let rubs = friction.is_some();
-        if self.solver.is_none() || rubs && !self.pairs.serve(n, pairs.active(), none()) {
-            if rubs {
-                self.pairs.renew(state, pairs, none());
-            }
-            self.build_pattern(chain)?;
-        }
+        self.keep_pattern(state, pairs, rubs)?;
         if self.is_current && !rubs {
             return Ok(());
         }
@@ -275,6 +326,26 @@ impl TwistViscosity {
     /// How often a matrix was factorised.
     pub fn n_factorisations(&self) -> u64 {
         self.n_factorisations
+    }
+
+    /// Whether a matrix was factorised, and how often.
+    pub(crate) fn memory(&self) -> Option<u64> {
+        self.solver.as_ref().map(|_| self.n_factorisations)
+    }
+
+    /// Makes a matrix again, as [`prepare`](Self::prepare), where one was remembered.
+    pub(crate) fn recall(
+        &mut self,
+        chain: Chain,
+        cosine: &[f64],
+        stiffness: f64,
+        memory: Option<u64>,
+    ) -> Result<(), SparseError> {
+        if let Some(n_factorisations) = memory {
+            self.prepare(chain, cosine, stiffness)?;
+            self.n_factorisations = n_factorisations;
+        }
+        Ok(())
     }
 
     /// Assembles and factorises M_θ + `stiffness` Σ_i (w_i − w_{i−1})².

@@ -64,8 +64,15 @@ impl Reporter {
                     None => note!("{text}"),
                 }
             }
-            (Event::Working { name, what }, Some(progress)) => {
-                progress.working(&format!("{name}: {what}"));
+            (Event::Working { name, what }, Some(progress)) => progress.working(name, &what),
+            (
+                Event::Progress {
+                    name,
+                    progress: far,
+                },
+                Some(progress),
+            ) => {
+                progress.working(name, far);
             }
             (Event::Knot { .. }, Some(progress)) => progress.restart(),
             (

@@ -1,6 +1,6 @@
 //! RKC2: a Runge-Kutta-Chebyshev method of order 2, explicit and stable far along the negative real axis.
 
-use super::{Counters, SpectralBound, Stepper, Trial};
+use super::{Counters, SpectralBound, Stepper, StepperMemory, Trial};
 use crate::check::{InvalidValue, in_range};
 use crate::control::Rejection;
 
@@ -69,6 +69,17 @@ impl Rkc2 {
     /// Limit of stages a step.
     pub fn max_stages(&self) -> usize {
         self.max_stages
+    }
+
+    fn allocate(&mut self, n: usize) {
+        for buffer in [
+            &mut self.rate,
+            &mut self.stage_rate,
+            &mut self.before,
+            &mut self.last,
+        ] {
+            *buffer = vec![0.0; n];
+        }
     }
 
     fn radius<M: SpectralBound>(
@@ -229,14 +240,7 @@ impl<M: SpectralBound> Stepper<M> for Rkc2 {
     ) -> Result<Trial, Rejection> {
         let n = model.n_dof();
         if self.rate.len() != n {
-            for buffer in [
-                &mut self.rate,
-                &mut self.stage_rate,
-                &mut self.before,
-                &mut self.last,
-            ] {
-                *buffer = vec![0.0; n];
-            }
+            self.allocate(n);
             Stepper::<M>::reset(self);
         }
         self.counters.n_trials += 1;
@@ -324,6 +328,28 @@ impl<M: SpectralBound> Stepper<M> for Rkc2 {
 
     fn counters(&self) -> Counters {
         self.counters
+    }
+
+    fn memory(&self) -> StepperMemory {
+        StepperMemory {
+            counters: self.counters,
+            has_begun: !self.rate.is_empty(),
+            rate: self.rate_known.then(|| self.rate.clone()),
+            radius: self.radius,
+        }
+    }
+
+    fn recall(&mut self, memory: StepperMemory, n_dof: usize) {
+        if memory.has_begun {
+            self.allocate(n_dof);
+        }
+        self.counters = memory.counters;
+        self.radius = memory.radius;
+        self.end_rate_known = false;
+        self.rate_known = memory.rate.is_some();
+        if let Some(rate) = memory.rate {
+            self.rate = rate;
+        }
     }
 }
 

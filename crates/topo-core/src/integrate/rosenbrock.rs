@@ -1,6 +1,6 @@
 //! Rosenbrock-W methods: linearly implicit, and of full order for any Jacobian.
 
-use super::{Counters, LinearlyImplicit, Stepper, Trial};
+use super::{Counters, LinearlyImplicit, Stepper, StepperMemory, Trial};
 use crate::check::{InvalidValue, in_range};
 use crate::control::Rejection;
 
@@ -96,6 +96,13 @@ impl RosenbrockW {
         }
     }
 
+    fn allocate(&mut self, n: usize) {
+        for buffer in [&mut self.rate, &mut self.step, &mut self.error] {
+            *buffer = vec![0.0; n];
+        }
+        self.stages = vec![vec![0.0; n]; self.tableau.n_stages];
+    }
+
     /// The parameter gamma.
     pub fn gamma(&self) -> f64 {
         self.tableau.gamma
@@ -112,10 +119,7 @@ impl<M: LinearlyImplicit> Stepper<M> for RosenbrockW {
     ) -> Result<Trial, Rejection> {
         let (n, t) = (model.n_dof(), self.tableau);
         if self.rate.len() != n {
-            for buffer in [&mut self.rate, &mut self.step, &mut self.error] {
-                *buffer = vec![0.0; n];
-            }
-            self.stages = vec![vec![0.0; n]; t.n_stages];
+            self.allocate(n);
             self.rate_known = false;
         }
         self.counters.n_trials += 1;
@@ -175,6 +179,26 @@ impl<M: LinearlyImplicit> Stepper<M> for RosenbrockW {
 
     fn counters(&self) -> Counters {
         self.counters
+    }
+
+    fn memory(&self) -> StepperMemory {
+        StepperMemory {
+            counters: self.counters,
+            has_begun: !self.rate.is_empty(),
+            rate: self.rate_known.then(|| self.rate.clone()),
+            radius: None,
+        }
+    }
+
+    fn recall(&mut self, memory: StepperMemory, n_dof: usize) {
+        if memory.has_begun {
+            self.allocate(n_dof);
+        }
+        self.counters = memory.counters;
+        self.rate_known = memory.rate.is_some();
+        if let Some(rate) = memory.rate {
+            self.rate = rate;
+        }
     }
 }
 

@@ -1,7 +1,7 @@
 //! Tests of the loop on a decay whose every number is known.
 
 use super::*;
-use crate::integrate::{GAMMA_L_STABLE_LARGE, LinearlyImplicit, RosenbrockW};
+use crate::integrate::{GAMMA_L_STABLE_LARGE, LinearlyImplicit, Rkc2, RosenbrockW, SpectralBound};
 use crate::observe::Schedule;
 
 /// u' = -u with energy u^2/2, and ways to misbehave.
@@ -70,6 +70,12 @@ impl LinearlyImplicit for Decay {
     fn solve(&mut self, rhs: &mut [f64]) -> Result<(), Rejection> {
         rhs[0] /= self.w;
         Ok(())
+    }
+}
+
+impl SpectralBound for Decay {
+    fn spectral_radius(&mut self, _: &Vec<f64>) -> Result<f64, Rejection> {
+        Ok(1.0)
     }
 }
 
@@ -153,25 +159,6 @@ fn every_way_to_stop() {
     assert_eq!(*last, Rejection::Domain { what: "below" });
     assert!(run.state()[0] >= 0.7 && run.rejections().count("domain") > 10);
 
-    let mut run = simulation(Decay::default(), 1e-3);
-    *run.control_mut() = run.control().clone().with_max_trials(7);
-    assert_eq!(
-        run.run(1e9, &mut [], &mut never),
-        StopReason::StepLimit { n: 7 }
-    );
-    assert_eq!(run.n_steps() + run.rejections().total(), 7);
-
-    let interrupt = Interrupt::new();
-    let mut run = simulation(Decay::default(), 1e-3).with_interrupt(interrupt.clone());
-    let mut ask = |s: &Sample<'_, Vec<f64>>| {
-        if s.step == 3 {
-            interrupt.request();
-        }
-        None
-    };
-    assert_eq!(run.run(1e9, &mut [], &mut ask), StopReason::Interrupted);
-    assert_eq!(run.n_steps(), 3);
-
     let mut run = simulation(
         Decay {
             fatal_after: Some(0.9),
@@ -198,9 +185,104 @@ fn every_way_to_stop() {
 }
 
 #[test]
+fn limits_and_interrupts_stop_a_run() {
+    let mut run = simulation(Decay::default(), 1e-3);
+    *run.control_mut() = run.control().clone().with_max_trials(7);
+    assert_eq!(
+        run.run(1e9, &mut [], &mut never),
+        StopReason::StepLimit { n: 7 }
+    );
+    assert_eq!(run.n_steps() + run.rejections().total(), 7);
+
+    let interrupt = Interrupt::new();
+    let mut run = simulation(Decay::default(), 1e-3).with_interrupt(interrupt.clone());
+    let mut ask = |s: &Sample<'_, Vec<f64>>| {
+        if s.step == 3 {
+            interrupt.request();
+        }
+        None
+    };
+    assert_eq!(run.run(1e9, &mut [], &mut ask), StopReason::Interrupted);
+    assert_eq!(run.n_steps(), 3);
+}
+
+#[test]
 fn a_time_too_large_to_grow_ends_the_run() {
-    let mut run = simulation(Decay::default(), 1e-3).resumed_at(1e30, 5);
+    let mut run = simulation(Decay::default(), 1e-3);
+    run.steps.time = 1e30;
     assert_eq!(run.run(2e30, &mut [], &mut never).name(), "step-too-small");
+}
+
+/// Stopped after any number of steps and gone on from what was remembered, with either integrator and a guard that refuses steps.
+#[test]
+fn a_resumed_simulation_takes_the_same_steps() {
+    fn check<S: Stepper<Decay> + Clone>(fresh: &Simulation<Decay, S>) {
+        let mut whole = fresh.clone();
+        whole.run(3.0, &mut [], &mut never);
+        for n in [0, 1, 7, 20] {
+            let mut part = fresh.clone();
+            while part.n_steps() < n {
+                assert_eq!(part.advance(3.0, &mut [], &mut never), None);
+            }
+            let bytes = serde_json::to_string(&part.memory()).unwrap();
+            let memory: SimulationMemory = serde_json::from_str(&bytes).unwrap();
+            assert_eq!(memory.flaw(fresh.control(), 3.0, 1), None);
+            let mut rest = Simulation {
+                model: part.model.clone(),
+                ..fresh.clone()
+            };
+            rest.state.clone_from(&part.state);
+            let mut rest = rest.resumed(memory);
+            while rest.advance(3.0, &mut [], &mut never).is_none() {}
+            assert_eq!((rest.state(), rest.time()), (whole.state(), whole.time()));
+            assert_eq!(rest.memory(), whole.memory());
+        }
+    }
+    let model = || Decay {
+        longest_allowed: Some(0.2),
+        ..Decay::default()
+    };
+    let rosenbrock = simulation(model(), 1e-4);
+    check(&rosenbrock);
+    let control = rosenbrock.control().clone();
+    check(&Simulation::new(
+        model(),
+        vec![1.0],
+        Rkc2::default(),
+        control,
+    ));
+}
+
+#[test]
+fn what_does_not_fit_a_simulation_is_named() {
+    let fresh = simulation(Decay::default(), 1e-3);
+    let control = fresh.control().clone();
+    let flaw = |change: fn(&mut SimulationMemory)| {
+        let mut memory = fresh.memory();
+        change(&mut memory);
+        memory.flaw(&control, 3.0, 1)
+    };
+    assert_eq!(flaw(|_| {}), None);
+    for (change, word) in [
+        (
+            (|m| m.steps.time = 4.0) as fn(&mut SimulationMemory),
+            "time",
+        ),
+        (|m| m.steps.time = f64::NAN, "time"),
+        (|m| m.steps.last_dt = f64::INFINITY, "time"),
+        (
+            |m| m.steps.control = StepControl::new(1e-2, 1.0).unwrap(),
+            "control",
+        ),
+        (|m| m.stepper.rate = Some(vec![0.0; 2]), "integrator"),
+        (|m| m.stepper.rate = Some(vec![f64::NAN]), "integrator"),
+        (|m| m.stepper.radius = Some(-1.0), "integrator"),
+        (|m| m.steps.n_trials = u64::MAX, "counter"),
+        (|m| m.stepper.counters.n_solves = u64::MAX, "counter"),
+    ] {
+        let found = flaw(change);
+        assert!(found.is_some_and(|f| f.contains(word)), "{word}: {found:?}");
+    }
 }
 
 #[test]

@@ -9,6 +9,7 @@ use topo_sparse::SparseCholesky;
 
 use super::constraints::radius_gradient;
 use super::lbfgs::minimise;
+use super::stop::Stop;
 use crate::{V, thickness};
 
 /// Strands nearer than this have a strut; further ones are watched only after the list is made anew.
@@ -44,7 +45,7 @@ pub(super) struct Settled {
 /// ```
 ///
 /// Here c is the distance of two edges less 2, or the radius of curvature at a vertex less 1.
-pub(super) fn settle(start: &Polyline, tolerance: f64) -> Option<Settled> {
+pub(super) fn settle(start: &Polyline, tolerance: f64, stop: &Stop) -> Option<Settled> {
     let curve = start.scaled(1.0 / thickness(start).tau).ok()?;
     let mut problem = Problem::new(&curve)?;
     let mut x: Vec<f64> = curve
@@ -57,15 +58,18 @@ pub(super) fn settle(start: &Polyline, tolerance: f64) -> Option<Settled> {
     let mut converged = false;
     let mut last_length = f64::INFINITY;
     for _ in 0..MOST_ROUNDS {
+        if stop.asks() {
+            break;
+        }
         // Each list of struts serves until a vertex has moved too far for it.
         loop {
             problem.watch(&x);
             let home = x.clone();
             let evaluated = minimise(&mut problem, &mut x, MOST_STEPS, 1e-3 * tolerance, |x| {
-                x.iter().zip(&home).any(|(a, b)| (a - b).abs() > STALE)
+                stop.asks() || x.iter().zip(&home).any(|(a, b)| (a - b).abs() > STALE)
             })?;
             n_evaluations += evaluated.n_evaluations;
-            if !evaluated.interrupted {
+            if !evaluated.interrupted || stop.asks() {
                 break;
             }
         }

@@ -10,6 +10,7 @@ use super::level::Outcome;
 use super::search::{KICK, NEAR_TIE, tighten_loose};
 use super::settings::TightenSettings;
 use super::start::{MOEBIUS_EDGES, MOEBIUS_STEPS, padded, stabilised};
+use super::stop::Stop;
 use crate::inversion::inverted;
 use crate::moebius::relax_moebius;
 use crate::{Invariants, KnotEntry, KnotError, closed_braid, thickness};
@@ -43,13 +44,15 @@ pub(super) fn hop(
     kind: &Invariants,
     n_hops: usize,
     settings: &TightenSettings,
+    stop: &Stop,
 ) -> Result<(Vec<Outcome>, usize), KnotError> {
     let mut rng = Pcg64::seed_from_u64(settings.seed);
     let mut met: Vec<Outcome> = Vec::new();
     let (mut n_done, mut n_failures, mut n_factorisations) = (0, 0, 0);
     let sound = |o: &Outcome| check_type(&entry.name, &o.curve, kind, "searching").is_ok();
-    while n_done < n_hops && n_failures < MOST_FAILURES {
-        let tightened = start(entry, &mut rng).and_then(|s| tighten_loose(&s, settings));
+    let is_over = |met: &[Outcome]| !met.is_empty() && stop.asks();
+    while n_done < n_hops && n_failures < MOST_FAILURES && !is_over(&met) {
+        let tightened = start(entry, &mut rng).and_then(|s| tighten_loose(&s, settings, stop));
         let Some(mut state) = tightened.filter(sound) else {
             n_failures += 1;
             continue;
@@ -59,11 +62,11 @@ pub(super) fn hop(
         let mut best = state.ropelength;
         keep(&mut met, &state);
         let mut idle = 0;
-        while idle < PATIENCE && n_done < n_hops {
+        while idle < PATIENCE && n_done < n_hops && !is_over(&met) {
             idle += 1;
             n_done += 1;
             let Some(next) =
-                moved(&state.curve, &mut rng).and_then(|c| tighten_loose(&c, settings))
+                moved(&state.curve, &mut rng).and_then(|c| tighten_loose(&c, settings, stop))
             else {
                 continue;
             };

@@ -7,6 +7,7 @@ use rand_pcg::Pcg64;
 use topo_core::Polyline;
 
 use super::level::{LOOSE_REACH, Level, tighten_level};
+use super::stop::Stop;
 use crate::V;
 
 /// Displaces a closed curve by a random sum of its first harmonics so that the largest displacement is `amplitude`.
@@ -60,7 +61,10 @@ pub(crate) fn squeeze(curve: &Polyline, rng: &mut Pcg64) -> Option<Polyline> {
     let turned = curve.vertices().iter().map(|x| turn * x);
     let turned = Polyline::new(turned.collect(), true).ok()?;
     let n = turned.n_edges();
-    tighten_level(&turned, &level)?.last.resampled(n).ok()
+    tighten_level(&turned, &level, &Stop::default())?
+        .last
+        .resampled(n)
+        .ok()
 }
 
 #[cfg(test)]

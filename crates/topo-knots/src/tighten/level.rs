@@ -4,6 +4,7 @@ use topo_core::Polyline;
 
 use super::constraints::{Row, rebuild};
 use super::qp::{self, Hessian};
+use super::stop::Stop;
 use crate::{V, thickness};
 
 /// How to tighten at one resolution.
@@ -84,7 +85,9 @@ pub(crate) struct Outcome {
 /// \min_y \frac{N}{2 L_0} \sum_i |e_i + \Delta y_i|^2 + \frac{\mu h}{2} |y|^2 + \frac{\mu_2}{2 h^3} |D^2 y|^2,
 /// \qquad A y \ge b
 /// ```
-pub(crate) fn tighten_level(start: &Polyline, level: &Level) -> Option<Outcome> {
+///
+/// Cut short, it gives the shortest curve met so far.
+pub(crate) fn tighten_level(start: &Polyline, level: &Level, stop: &Stop) -> Option<Outcome> {
     let n = start.n_vertices();
     let tau = thickness(start).tau;
     let mut curve = start.scaled(1.0 / tau).ok()?;
@@ -96,7 +99,7 @@ pub(crate) fn tighten_level(start: &Polyline, level: &Level) -> Option<Outcome> 
     let [mut delta, least_delta] = level.reach;
     let mut tau: f64 = 1.0;
     let (mut n_steps, mut n_factorisations, mut converged) = (0, 0, false);
-    while n_steps < level.max_steps {
+    while n_steps < level.max_steps && !stop.asks() {
         delta = delta.min(LARGEST_STEP * tau);
         let length = curve.length();
         let h = length / n as f64;

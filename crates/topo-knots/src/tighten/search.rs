@@ -8,6 +8,7 @@ use super::check::check_type;
 use super::kick::{kick, squeeze};
 use super::level::{LOOSE_REACH, Level, Outcome, tighten_level};
 use super::settings::TightenSettings;
+use super::stop::Stop;
 use crate::thickness;
 use crate::{Invariants, KnotError};
 
@@ -27,14 +28,18 @@ pub(crate) fn search(
     starts: &[Polyline],
     kind: &Invariants,
     settings: &TightenSettings,
+    stop: &Stop,
 ) -> Result<(Vec<Outcome>, usize), KnotError> {
     let mut rng = Pcg64::seed_from_u64(settings.seed);
     let mut pool: Vec<Outcome> = Vec::new();
     let mut last = "no start could be tightened".to_owned();
     let mut n_factorisations = 0;
     for start in starts {
+        if !pool.is_empty() && stop.asks() {
+            break;
+        }
         check_type(name, start, kind, "preparing the starts")?;
-        let Some(outcome) = tighten_loose(start, settings) else {
+        let Some(outcome) = tighten_loose(start, settings, stop) else {
             continue;
         };
         n_factorisations += outcome.n_factorisations;
@@ -47,7 +52,7 @@ pub(crate) fn search(
     // Many starts rest at saddle points high above the basin below them, so each is kicked before they are compared.
     for place in 0..pool.len() {
         for _ in 0..settings.n_kicks_a_start {
-            n_factorisations += try_move(&mut pool[place], Move::Kick, name, kind, &mut rng);
+            n_factorisations += try_move(&mut pool[place], Move::Kick, name, kind, &mut rng, stop);
         }
     }
     pool.sort_by(|a, b| a.ropelength.total_cmp(&b.ropelength));
@@ -58,7 +63,7 @@ pub(crate) fn search(
             (_, place) => (Move::Kick, place),
         };
         if let Some(finalist) = pool.get_mut(place) {
-            n_factorisations += try_move(finalist, kind_of_move, name, kind, &mut rng);
+            n_factorisations += try_move(finalist, kind_of_move, name, kind, &mut rng, stop);
         }
     }
     pool.sort_by(|a, b| a.ropelength.total_cmp(&b.ropelength));
@@ -91,13 +96,17 @@ fn try_move(
     name: &str,
     kind: &Invariants,
     rng: &mut Pcg64,
+    stop: &Stop,
 ) -> usize {
+    if stop.asks() {
+        return 0;
+    }
     let curve = &best.curve;
     let moved = match how {
         Move::Kick => kick(curve, KICK * thickness(curve).tau, rng),
         Move::Squeeze => squeeze(curve, rng),
     };
-    let Some(outcome) = moved.and_then(|curve| tighten_level(&curve, &level())) else {
+    let Some(outcome) = moved.and_then(|curve| tighten_level(&curve, &level(), stop)) else {
         return 0;
     };
     let n_factorisations = outcome.n_factorisations;
@@ -123,7 +132,11 @@ fn level() -> Level {
 }
 
 /// Tightens a start that may be several times too long: first with as many vertices as it needs to bend.
-pub(super) fn tighten_loose(start: &Polyline, settings: &TightenSettings) -> Option<Outcome> {
+pub(super) fn tighten_loose(
+    start: &Polyline,
+    settings: &TightenSettings,
+    stop: &Stop,
+) -> Option<Outcome> {
     let n = settings.search_vertices;
     let n_loose =
         (LOOSE_PER_UNIT * start.length() / thickness(start).tau).min(4.0 * n as f64) as usize;
@@ -136,11 +149,11 @@ pub(super) fn tighten_loose(start: &Polyline, settings: &TightenSettings) -> Opt
             enough: n as f64,
             ..level()
         };
-        let outcome = tighten_level(&start.resampled(n_loose).ok()?, &loose)?;
+        let outcome = tighten_level(&start.resampled(n_loose).ok()?, &loose, stop)?;
         n_factorisations = outcome.n_factorisations;
         curve = outcome.curve;
     }
-    let mut outcome = tighten_level(&curve.resampled(n).ok()?, &level())?;
+    let mut outcome = tighten_level(&curve.resampled(n).ok()?, &level(), stop)?;
     outcome.n_factorisations += n_factorisations;
     Some(outcome)
 }

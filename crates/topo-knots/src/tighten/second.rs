@@ -1,10 +1,11 @@
 //! A second opinion on a tight knot, by another method from a loosened start.
 
 use serde::{Deserialize, Serialize};
-use topo_core::{CpuClock, Polyline};
+use topo_core::{CpuClock, Interrupt, Polyline};
 
 use super::augmented::settle;
 use super::check::check_type;
+use super::stop::Stop;
 use super::{TightKnot, refined};
 use crate::{KnotError, thickness, thickness_brute_force};
 
@@ -45,6 +46,18 @@ pub struct SecondOpinion {
 /// # Errors
 /// [`KnotError::NotTightened`] if the method fails, [`KnotError::PassedThroughItself`] if it changed the type.
 pub fn second_opinion(tight: &TightKnot) -> Result<SecondOpinion, KnotError> {
+    second_opinion_until(tight, &Interrupt::new())
+}
+
+/// As [`second_opinion`], but given up when `interrupt` asks.
+///
+/// # Errors
+/// As [`second_opinion`], and [`KnotError::Interrupted`] with the curve of the first method.
+pub fn second_opinion_until(
+    tight: &TightKnot,
+    interrupt: &Interrupt,
+) -> Result<SecondOpinion, KnotError> {
+    let stop = Stop::at(interrupt);
     let clock = CpuClock::start();
     let n_fine = tight.curve.n_vertices();
     let failed = |n: usize| KnotError::NotTightened {
@@ -65,7 +78,12 @@ pub fn second_opinion(tight: &TightKnot) -> Result<SecondOpinion, KnotError> {
     let mut n_evaluations = 0;
     loop {
         let tolerance = if n == n_fine { FINE } else { ROUGH };
-        let settled = settle(&curve, tolerance).ok_or_else(|| failed(n))?;
+        let settled = settle(&curve, tolerance, &stop).ok_or_else(|| failed(n))?;
+        if stop.asks() {
+            return Err(KnotError::Interrupted {
+                best: Box::new(tight.clone()),
+            });
+        }
         n_evaluations += settled.n_evaluations;
         check_type(
             &tight.name,

@@ -397,3 +397,37 @@ fn long_hops_find_the_starts_of_the_table() {
         assert!((-0.005..0.001).contains(&excess), "{name}: {excess}");
     }
 }
+
+/// Asked to stop at once, and amid the search: the curve is a tight shape so far, of the right type, and said not to have converged.
+#[test]
+fn an_interrupted_search_gives_its_best_curve() {
+    let table = KnotTable::builtin();
+    let knot = table.get("4_1").unwrap();
+    let settings = TightenSettings::fine();
+    let length = |after: std::time::Duration| {
+        let interrupt = Interrupt::new();
+        let made = std::thread::scope(|scope| {
+            let asked = interrupt.clone();
+            scope.spawn(move || {
+                std::thread::sleep(after);
+                asked.request();
+            });
+            tighten_entry_until(&knot, &settings, &interrupt)
+        });
+        let Err(KnotError::Interrupted { best }) = made else {
+            panic!("{made:?}")
+        };
+        assert!(!best.certificate.converged);
+        knot.verify(&best.curve).unwrap();
+        let tau = thickness_brute_force(&best.curve).tau;
+        assert!((best.curve.length() / tau / best.length_over_radius - 1.0).abs() < 1e-9);
+        best.length_over_radius
+    };
+    let at_once = length(std::time::Duration::ZERO);
+    let later = length(std::time::Duration::from_millis(400));
+    let tight = knot.length_over_radius.unwrap();
+    assert!(
+        tight < later && later <= at_once,
+        "{tight} {later} {at_once}"
+    );
+}

@@ -1,7 +1,7 @@
 //! The shapes of one discharge at many times, for moving pictures.
 
-use nalgebra::Vector3;
-use topo_core::Interrupt;
+use topo_core::Vector3;
+use topo_core::{Interrupt, RunHooks};
 use topo_knots::KnotTable;
 use topo_rod::{CutSite, DischargeSettings};
 
@@ -48,7 +48,8 @@ pub fn discharge_frames(
         table,
     };
     let area = std::f64::consts::PI;
-    let charged = charge(&job, interrupt)?.rod;
+    let mut hooks = RunHooks::new(interrupt);
+    let charged = charge(&job, &mut hooks, None)?.rod;
     let mut frames = vec![ShapeFrame {
         time: None,
         vertices: charged.state().vertices().to_vec(),
@@ -60,7 +61,7 @@ pub fn discharge_frames(
         ..scene.discharge
     };
     let site = CutSite::MaximumEnergyDensity;
-    let run = job.discharge(&charged, site, &settings, interrupt)?;
+    let run = job.discharge(&charged, site, &settings, &mut hooks)?;
     frames.extend(run.record.samples.iter().map(|s| {
         let density = charged.battery().energy_density(&s.state);
         ShapeFrame {

@@ -1,9 +1,8 @@
 //! A case with what it starts from, and what was followed of it.
 
 use topo_analysis::{DischargeTimes, SweepRow, Timeline};
-use topo_core::Interrupt;
 use topo_knots::{KnotTable, TightKnot};
-use topo_rod::{ChargedRod, CutSite, Discharge, DischargeSettings, RodError};
+use topo_rod::{ChargedRod, CutSite, Discharge, DischargeSettings, RodError, RunHooks};
 
 use super::case::ElasticCase;
 use super::scene::ElasticScene;
@@ -33,11 +32,11 @@ impl CaseJob<'_> {
         charged: &ChargedRod,
         site: CutSite,
         settings: &DischargeSettings,
-        interrupt: &Interrupt,
+        hooks: &mut RunHooks<'_>,
     ) -> Result<Discharge, LabError> {
         charged
             .cut(site)
-            .and_then(|cut| cut.discharge(settings, interrupt))
+            .and_then(|cut| cut.discharge(settings, hooks))
             .map_err(|source| self.refused(source))
     }
 }
@@ -50,5 +49,7 @@ pub(super) struct FollowedCut {
     /// Of the energy that the cut left.
     pub times_after_cut: DischargeTimes,
     pub timeline: Timeline,
+    /// Processor seconds of all this, those before a checkpoint included.
+    pub cpu_seconds: f64,
     pub row: SweepRow,
 }

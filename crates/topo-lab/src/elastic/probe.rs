@@ -1,6 +1,6 @@
 //! The short run that tells how fast this machine is with rods.
 
-use topo_core::Interrupt;
+use topo_core::RunHooks;
 use topo_rod::{Accuracy, ChargeSettings, Guards, RodBattery, RodParameters};
 
 use crate::cost::Probe;
@@ -25,7 +25,7 @@ fn charge() -> Option<()> {
     };
     let battery = RodBattery::new(&rod, &accuracy, Guards::default(), &trefoil()).ok()?;
     let settings = ChargeSettings::default();
-    battery.charge(&settings, &Interrupt::new()).ok()?;
+    battery.charge(&settings, &mut RunHooks::default()).ok()?;
     Some(())
 }
 

@@ -1,17 +1,22 @@
 //! One case: charge a knot, cut it where the scene says, follow each discharge, and write a folder.
 
-use nalgebra::Vector3;
-use topo_core::{CpuClock, Interrupt, StopReason};
+use std::path::Path;
+
+use topo_core::Vector3;
+use topo_core::{CpuClock, Progress, StopReason};
 use topo_knots::identify;
-use topo_rod::{ChargedRod, CutSite, Discharge, Guards, PhaseReport, RodBattery, RodSample};
+use topo_rod::{
+    ChargedRod, CutSite, Discharge, Guards, PhaseReport, RodBattery, RodSample, RunHooks,
+};
 
 use super::choices::{Cuts, NEAR_TIE};
 use super::identity::starts_from_two_images;
 use super::imperfection::perturbed;
 use super::job::{CaseJob, FollowedCut};
+use super::observable::further;
 use super::record::{MadeCase, write_case};
 use crate::LabError;
-use crate::folder::Outcome;
+use crate::folder::{Outcome, forget_checkpoints};
 use crate::sweep::Place;
 use topo_analysis::{DischargeTimes, ELASTIC_SHARES, SweepRow, Timeline, Warning, Warnings};
 
@@ -19,6 +24,8 @@ use topo_analysis::{DischargeTimes, ELASTIC_SHARES, SweepRow, Timeline, Warning,
 #[derive(Debug)]
 pub(crate) struct ChargedCase {
     pub rod: ChargedRod,
+    /// Processor seconds of all charges, those before a checkpoint included.
+    pub cpu_seconds: f64,
     /// Elastic energy of the image that was charged too and not kept, in E_0; none if only one was or it did not come to its end.
     pub energy_other_image: Option<f64>,
 }
@@ -33,9 +40,15 @@ pub(crate) struct ChargedCase {
 /// The mirror image of a knot starts from the mirror image of its start curve, imperfections included, so that at the opposite
 /// twist all of its run is the mirror image of the knot's.
 ///
+/// `kept` names the checkpoint files of the curve itself and of its image.
+///
 /// # Validation
 /// `amphichiral_knots_are_charged_from_both_images_and_the_other_is_reported`, `law_mirrored_knots_give_mirrored_runs`.
-pub(crate) fn charge(job: &CaseJob<'_>, interrupt: &Interrupt) -> Result<ChargedCase, LabError> {
+pub(crate) fn charge(
+    job: &CaseJob<'_>,
+    hooks: &mut RunHooks<'_>,
+    kept: Option<[&Path; 2]>,
+) -> Result<ChargedCase, LabError> {
     let CaseJob {
         scene,
         case,
@@ -62,20 +75,27 @@ pub(crate) fn charge(job: &CaseJob<'_>, interrupt: &Interrupt) -> Result<Charged
         let moved = moved.map_err(|e| refuse(e.into()))?;
         battery = battery.disturbed(&moved).map_err(refuse)?;
     }
-    let from = |battery: &RodBattery| battery.charge(&scene.charge, interrupt).map_err(refuse);
-    let charged = from(&battery)?;
+    let mut from = |battery: &RodBattery, image: usize| {
+        if let Some(paths) = kept {
+            hooks.keep_in(paths[image]);
+        }
+        battery.charge(&scene.charge, hooks).map_err(refuse)
+    };
+    let charged = from(&battery, 0)?;
     if !starts_from_two_images(case, &entry) {
         return Ok(ChargedCase {
+            cpu_seconds: charged.record().report.cpu_seconds,
             rod: charged,
             energy_other_image: None,
         });
     }
-    let image = from(&battery.mirrored().map_err(refuse)?)?;
+    let image = from(&battery.mirrored().map_err(refuse)?, 1)?;
     let stored = |rod: &ChargedRod| {
         let last = rod.record().samples.last();
         let energy = last.map_or(f64::INFINITY, |s| s.elastic());
         (!rod.record().report.stop.is_success(), energy)
     };
+    let cpu_seconds = [&charged, &image].map(|rod| rod.record().report.cpu_seconds);
     let (rod, other) = if stored(&image) < stored(&charged) {
         (image, charged)
     } else {
@@ -83,37 +103,44 @@ pub(crate) fn charge(job: &CaseJob<'_>, interrupt: &Interrupt) -> Result<Charged
     };
     let (has_failed, energy) = stored(&other);
     Ok(ChargedCase {
+        cpu_seconds: cpu_seconds.iter().sum(),
         rod,
         energy_other_image: Some(energy).filter(|_| !has_failed),
     })
 }
 
-/// Runs a case and writes its folder; `None` when interrupted, and then nothing is written.
+/// Runs a case and writes its folder; `None` when interrupted: then its checkpoints stay.
 pub(crate) fn run(
     job: &CaseJob<'_>,
     place: &Place<'_>,
 ) -> Result<Option<Outcome<SweepRow>>, LabError> {
-    let (folder, interrupt) = (place.folder, &place.settings.interrupt);
-    let clock = CpuClock::start();
-    let ChargedCase {
-        rod: charged,
-        energy_other_image,
-    } = charge(job, interrupt)?;
-    let charge_seconds = clock.seconds();
-    if interrupt.is_requested() {
+    place.or_anew(|| attempt(job, place))
+}
+
+fn attempt(job: &CaseJob<'_>, place: &Place<'_>) -> Result<Option<Outcome<SweepRow>>, LabError> {
+    forget_checkpoints(place.folder, place.fingerprint)?;
+    let paths = ["charge", "charge-of-image"].map(|phase| place.checkpoint(phase));
+    let mut tell = |p: &Progress| place.progressed(p);
+    let mut hooks = RunHooks::new(&place.settings.interrupt)
+        .with_progress(&mut tell)
+        .with_checkpoint(&paths[0], place.settings.checkpoint_seconds);
+    let charged_case = charge(job, &mut hooks, Some([&paths[0], &paths[1]]))?;
+    if hooks.is_interrupted() {
         return Ok(None);
     }
-    let sites = sites(job, &charged);
-    let mut base = charged_row(job, &charged);
-    base.energy_other_image = energy_other_image;
+    let charge_seconds = charged_case.cpu_seconds;
+    let charged = &charged_case.rod;
+    let sites = sites(job, charged);
+    let mut base = charged_row(job, charged);
+    base.energy_other_image = charged_case.energy_other_image;
     let mut runs = Vec::new();
     if charged.record().report.stop.is_success() {
-        for &at in &sites {
-            let clock = CpuClock::start();
-            let Some(mut run) = follow(job, &charged, at, interrupt)? else {
+        for (k, &at) in sites.iter().enumerate() {
+            hooks.keep_in(&place.checkpoint(&format!("discharge-{k}")));
+            let Some(mut run) = follow(job, charged, at, &mut hooks)? else {
                 return Ok(None);
             };
-            let cpu_seconds = clock.seconds() + charge_seconds / sites.len() as f64;
+            let cpu_seconds = run.cpu_seconds + charge_seconds / sites.len() as f64;
             run.row = discharge_row(&base, &run, cpu_seconds);
             runs.push(run);
         }
@@ -127,24 +154,30 @@ pub(crate) fn run(
     };
     let outcome = Outcome {
         rows,
-        failure: failure(&charged, &runs),
+        failure: failure(charged, &runs),
     };
     let made = MadeCase {
         job,
-        charged: &charged,
+        charged,
         runs: &runs,
         outcome: &outcome,
         charge_seconds,
     };
-    let written = write_case(&made, place);
-    if let Err(error) = written {
+    finish(&made, place)?;
+    Ok(Some(outcome))
+}
+
+/// Writes the folder of a case; its checkpoints are of no more use then.
+fn finish(made: &MadeCase<'_>, place: &Place<'_>) -> Result<(), LabError> {
+    let folder = place.folder;
+    if let Err(error) = write_case(made, place) {
         // a folder without its run.json is of no use to anybody; what matters is the first error
         if let Err(left) = std::fs::remove_dir_all(folder) {
             tracing::debug!(folder = %folder.display(), %left, "an incomplete case stays behind");
         }
         return Err(error);
     }
-    Ok(Some(outcome))
+    forget_checkpoints(folder, "")
 }
 
 /// Where the scene cuts the rod.
@@ -174,18 +207,23 @@ fn follow(
     job: &CaseJob<'_>,
     charged: &ChargedRod,
     at: f64,
-    interrupt: &Interrupt,
+    hooks: &mut RunHooks<'_>,
 ) -> Result<Option<FollowedCut>, LabError> {
-    let discharge = job.discharge(charged, CutSite::At(at), &job.scene.discharge, interrupt)?;
-    if interrupt.is_requested() {
+    let discharge = job.discharge(charged, CutSite::At(at), &job.scene.discharge, hooks)?;
+    if hooks.is_interrupted() {
         return Ok(None);
     }
+    let clock = CpuClock::start();
     let timeline = timeline(job, &discharge)?;
-    let (curve, parts) = (&discharge.record.curve, discharge.record.parts.elastic());
+    let (curve, parts) = (
+        &discharge.record.curve,
+        discharge.record.report.own.parts.elastic(),
+    );
     let released = |of: f64| DischargeTimes::of(curve, &parts, of, &ELASTIC_SHARES);
     Ok(Some(FollowedCut {
         times: released(discharge.start),
         times_after_cut: released(discharge.after_cut),
+        cpu_seconds: discharge.record.report.cpu_seconds + clock.seconds(),
         discharge,
         timeline,
         row: SweepRow::default(),
@@ -236,7 +274,11 @@ fn phase_warnings(phase: &str, report: &PhaseReport, warnings: &mut Warnings) {
             100.0 * report.ledger_residual
         ));
     }
-    if report.min_distance_over_contact.is_some_and(|d| d < 0.75) {
+    if report
+        .own
+        .min_distance_over_contact
+        .is_some_and(|d| d < 0.75)
+    {
         warnings.push(format!("{phase}: strands overlap deeply"));
     }
 }
@@ -247,8 +289,8 @@ fn charged_row(job: &CaseJob<'_>, charged: &ChargedRod) -> SweepRow {
     let record = charged.record();
     let report = &record.report;
     let mut row = SweepRow {
-        link_drift: report.link_drift,
-        min_distance_over_contact: report.min_distance_over_contact,
+        link_drift: report.own.link_drift,
+        min_distance_over_contact: report.own.min_distance_over_contact,
         steps: report.n_steps,
         rejected: report.rejections.total(),
         ..job.scene.blank_row(job.case)
@@ -258,7 +300,7 @@ fn charged_row(job: &CaseJob<'_>, charged: &ChargedRod) -> SweepRow {
         row.bend = last.stored.of("bend");
         row.twist_energy = last.stored.of("twist");
         row.stretch = last.stored.of("stretch");
-        row.further = last.stored.further().collect();
+        row.further = further(last, &job.scene.observables);
         (row.writhe, row.total_twist) = (last.writhe, last.total_twist);
     }
     phase_warnings("charge", report, &mut row.warnings);
@@ -296,7 +338,7 @@ fn discharge_row(base: &SweepRow, run: &FollowedCut, cpu_seconds: f64) -> SweepR
         min_distance_over_contact: base
             .min_distance_over_contact
             .into_iter()
-            .chain(report.min_distance_over_contact)
+            .chain(report.own.min_distance_over_contact)
             .reduce(f64::min),
         steps: base.steps + report.n_steps,
         rejected: base.rejected + report.rejections.total(),
@@ -343,12 +385,14 @@ mod tests {
                 tight: &tight,
                 table: &table,
             };
-            let charged = charge(&job, &Interrupt::new()).unwrap();
+            let charged = charge(&job, &mut RunHooks::default(), None).unwrap();
             // the one curve alone
             let curve = tight.centreline().unwrap();
             let battery =
                 RodBattery::new(&case.rod, &scene.accuracy, Guards::default(), &curve).unwrap();
-            let single = battery.charge(&scene.charge, &Interrupt::new()).unwrap();
+            let single = battery
+                .charge(&scene.charge, &mut RunHooks::default())
+                .unwrap();
             (of(&charged.rod), charged.energy_other_image, of(&single))
         };
         let ((kept, other, plus), (_, other_minus, minus)) = (run(Some(0.5)), run(Some(-0.5)));

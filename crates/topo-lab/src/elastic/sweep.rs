@@ -188,7 +188,8 @@ impl Experiment for Rods<'_> {
     }
 }
 
-/// Runs all cases of a scene; what an earlier run finished with the same settings is kept.
+/// Runs all cases of a scene; what an earlier run finished with the same settings is kept, and a case that was interrupted or
+/// killed goes on from its last checkpoint.
 ///
 /// Each case writes its own folder and is complete when its `run.json` is there; `sweep.csv`, and `failed.csv` where a case failed,
 /// are written at the end, also after an interrupt, from what is finished. Results do not depend on the number of jobs.
@@ -221,6 +222,8 @@ pub fn estimate_sweep(
 mod tests {
     use std::path::Path;
     use std::sync::atomic::Ordering;
+
+    use topo_core::Phase;
 
     use super::*;
     use crate::RESULTS_VERSION;
@@ -400,6 +403,68 @@ mod tests {
             "{error}"
         );
         assert!(!begun.load(Ordering::Relaxed));
+    }
+
+    /// Stopped inside the charge and inside the discharge of a rod: its checkpoint stays, the next run goes on from it, and a finished
+    /// case leaves none behind. A checkpoint that is damaged is reported, and the case begun anew.
+    #[test]
+    fn a_rod_that_was_stopped_goes_on() {
+        let table = KnotTable::builtin();
+        let scene = ElasticScene::parse(SCENE, Path::new("scene.toml")).unwrap();
+        let calm = tempfile::tempdir().unwrap();
+        let first = run_sweep(&scene, &table, &settings(calm.path(), 1), &|_| {}).unwrap();
+        let torn = tempfile::tempdir().unwrap();
+        let case = |out: &Path| out.join(&scene.folder).join(&first.rows[0].case);
+        let checkpoints = || {
+            let entries = std::fs::read_dir(case(torn.path())).into_iter().flatten();
+            let paths = entries.map(|e| e.unwrap().path());
+            let is_one = |p: &std::path::PathBuf| p.extension().is_some_and(|e| e == "checkpoint");
+            let mut found: Vec<_> = paths.filter(is_one).collect();
+            found.sort();
+            found
+        };
+        let stop_at = |phase: Phase, step: u64| {
+            let stopping = settings(torn.path(), 1);
+            let report = run_sweep(&scene, &table, &stopping, &|event| {
+                if let Event::Progress { progress, .. } = event
+                    && (progress.phase, progress.step) == (phase, step)
+                {
+                    stopping.interrupt.request();
+                }
+            })
+            .unwrap();
+            assert!(report.interrupted && report.rows.is_empty());
+        };
+        let told = std::sync::Mutex::new(Vec::new());
+        let finish = || {
+            let report = run_sweep(&scene, &table, &settings(torn.path(), 1), &|event| {
+                if let Event::Replaced { reason, .. } = event {
+                    told.lock().unwrap().push(reason.to_owned());
+                }
+            })
+            .unwrap();
+            assert_eq!(timeless(&report), timeless(&first));
+            for file in ["charge.csv", "series.csv", "snapshots.csv"] {
+                let [a, b] =
+                    [calm.path(), torn.path()].map(|out| std::fs::read(case(out).join(file)));
+                assert!(a.unwrap() == b.unwrap(), "{file}");
+            }
+            assert!(checkpoints().is_empty());
+        };
+        stop_at(Phase::Charge, 3);
+        assert_eq!(checkpoints().len(), 1);
+        stop_at(Phase::Discharge, 5);
+        stop_at(Phase::Discharge, 9);
+        assert_eq!(checkpoints().len(), 2, "the charge and the discharge");
+        finish();
+        for damaged in 0..2 {
+            std::fs::remove_dir_all(torn.path().join(&scene.folder)).unwrap();
+            stop_at(Phase::Discharge, 9);
+            std::fs::write(&checkpoints()[damaged], b"TOPOCKPT nonsense").unwrap();
+            finish();
+        }
+        let damaged = "its checkpoint is damaged";
+        assert_eq!(told.into_inner().unwrap(), [damaged, damaged]);
     }
 
     #[test]

@@ -1,16 +1,17 @@
 //! One case: charge a colloid, switch its anchoring, follow the discharge, and write a folder.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use serde_json::json;
 use topo_analysis::{
     DischargeTimes, NEMATIC_SHARES, NematicRow, NematicSample, Warnings, late_rate,
 };
-use topo_core::{FileError, StopReason, load_checkpoint, save_checkpoint};
+use topo_core::{Progress, StopReason, load_checkpoint, save_checkpoint};
+use topo_nematic::flow::FlowCoupling;
+use topo_nematic::record::{ChargeReport, FinalSource, FinalState, MinimumState};
 use topo_nematic::{
-    ChargeReport, ChargedNematic, Discharge, DischargeSettings, FinalSource, FinalState,
-    FlowCoupling, MinimumState, NematicAccuracy, NematicBattery, NematicError, NematicState, Phase,
-    Progress, RunHooks, SwitchedNematic, Threads,
+    ChargedNematic, Discharge, DischargeSettings, NematicAccuracy, NematicBattery, NematicError,
+    NematicState, RunHooks, SwitchedNematic, Threads,
 };
 
 use super::case::NematicCase;
@@ -19,7 +20,6 @@ use super::scene::NematicScene;
 use super::snapshot::{Kept, RING_ORDER, centre};
 use crate::LabError;
 use crate::folder::{Outcome, forget_checkpoints, forget_file, make_folder};
-use crate::progress::Event;
 use crate::sweep::{About, Place, value};
 
 /// Schema of the checkpoint of snapshots.
@@ -35,28 +35,8 @@ pub(super) struct CaseRun<'a> {
 
 impl CaseRun<'_> {
     /// Runs the case and writes its folder; `None` when interrupted: then its checkpoint stays.
-    ///
-    /// A checkpoint that cannot be used is told and forgotten, and the case begins anew.
     pub fn run(&self) -> Result<Option<Outcome<NematicRow>>, LabError> {
-        match self.attempt() {
-            Err(LabError::Nematic { source, .. }) if is_unusable_checkpoint(&source) => {
-                self.tell_damaged();
-                forget_checkpoints(self.place.folder, "")?;
-                self.attempt()
-            }
-            other => other,
-        }
-    }
-
-    fn tell_damaged(&self) {
-        (self.place.progress)(Event::Replaced {
-            names: &[self.place.name.to_owned()],
-            reason: "its checkpoint is damaged",
-        });
-    }
-
-    fn tell(&self, p: &Progress) {
-        self.place.working(&told(p));
+        self.place.or_anew(|| self.attempt())
     }
 
     fn refuse(&self, source: NematicError) -> LabError {
@@ -64,15 +44,6 @@ impl CaseRun<'_> {
             case: self.place.name.to_owned(),
             source,
         }
-    }
-
-    fn checkpoint(&self, phase: &str) -> PathBuf {
-        let Place {
-            folder,
-            fingerprint: mark,
-            ..
-        } = *self.place;
-        folder.join(format!("{phase}-{mark}.checkpoint"))
     }
 
     fn attempt(&self) -> Result<Option<Outcome<NematicRow>>, LabError> {
@@ -89,11 +60,11 @@ impl CaseRun<'_> {
             ..self.scene.accuracy
         };
         let battery = NematicBattery::new(&self.case.nematic, &accuracy).map_err(refuse)?;
-        let mut tell = |p: &Progress| self.tell(p);
+        let mut tell = |p: &Progress| self.place.progressed(p);
         forget_checkpoints(folder, self.place.fingerprint)?;
         let mut hooks = RunHooks::new(interrupt)
             .with_progress(&mut tell)
-            .with_checkpoint(&self.checkpoint("charge"), sweep.checkpoint_seconds);
+            .with_checkpoint(&self.place.checkpoint("charge"), sweep.checkpoint_seconds);
         let charged = battery
             .charge(&self.scene.charge, &mut hooks)
             .map_err(refuse)?;
@@ -139,26 +110,30 @@ impl CaseRun<'_> {
         } else {
             ["snapshots", "discharge"]
         };
-        let (place, discharge) = (self.checkpoint(snapshots), self.checkpoint(discharge));
+        let (place, discharge) = (
+            self.place.checkpoint(snapshots),
+            self.place.checkpoint(discharge),
+        );
         let mut kept = self.kept_before(&place, &discharge)?;
         if sweep.keep_fields {
             let state = charged.state();
             FieldSnapshot::of(None, state, None, centre(state)).write(folder, 0)?;
         }
         let mut failed: Option<LabError> = None;
-        let mut see =
-            |s: &topo_nematic::NematicSample, state: &NematicState, flow: Option<&FlowCoupling>| {
-                let share = released
-                    .stored(end)
-                    .map_or(1.0, |stored| (s.energy.total() - end.energy) / stored);
-                if failed.is_none() && kept.see(s.time, share, state, flow) {
-                    let saved = self
-                        .keep_field(s.time, kept.n_kept, state, flow)
-                        .and_then(|()| Ok(save_checkpoint(&place, KEPT, &kept)?));
-                    failed = saved.err();
-                }
-            };
-        let mut tell = |p: &Progress| self.tell(p);
+        let mut see = |s: &topo_nematic::record::NematicSample,
+                       state: &NematicState,
+                       flow: Option<&FlowCoupling>| {
+            let share = released
+                .stored(end)
+                .map_or(1.0, |stored| (s.energy.total() - end.energy) / stored);
+            if failed.is_none() && kept.see(s.time, share, state, flow) {
+                let saved = self
+                    .keep_field(s.time, kept.n_kept, state, flow)
+                    .and_then(|()| Ok(save_checkpoint(&place, KEPT, &kept)?));
+                failed = saved.err();
+            }
+        };
+        let mut tell = |p: &Progress| self.place.progressed(p);
         let mut hooks = RunHooks::new(&sweep.interrupt)
             .with_progress(&mut tell)
             .with_samples(&mut see)
@@ -178,7 +153,7 @@ impl CaseRun<'_> {
         let kept: Kept = load_checkpoint(place, KEPT).unwrap_or_default();
         if kept == Kept::default() {
             if there {
-                self.tell_damaged();
+                self.place.tell_damaged();
             }
             // what was seen before cannot be seen again without going through the discharge again
             forget_file(discharge)?;
@@ -222,7 +197,7 @@ impl CaseRun<'_> {
         let ring = charged.ring(RING_ORDER);
         let (charge, discharge) = (charged.report(), &run.record.report);
         let minimum = charge.minimum.as_ref();
-        let flow = discharge.flow.as_ref().map(|f| f.counters);
+        let flow = discharge.own.flow.as_ref().map(|f| f.counters);
         let mut row = NematicRow {
             f_charged,
             f_after_switch: run.start,
@@ -247,7 +222,7 @@ impl CaseRun<'_> {
             stokes_updates: flow.map_or(0, |f| f.n_updates),
             stokes_iterations: flow.map_or(0, |f| f.n_boundary_solves),
             cpu_seconds: charge.cpu_seconds + discharge.cpu_seconds,
-            peak_bytes: charge.bytes.total().max(discharge.bytes.total()),
+            peak_bytes: charge.bytes.total().max(discharge.n_bytes()),
             ..self.scene.blank_row(self.case)
         };
         for text in battery.warnings() {
@@ -380,22 +355,7 @@ fn stability_warning(charge: &ChargeReport) -> Option<String> {
     }
 }
 
-/// Whether what a checkpoint holds is the reason why a run was refused.
-fn is_unusable_checkpoint(error: &NematicError) -> bool {
-    matches!(
-        error,
-        NematicError::ForeignCheckpoint { .. }
-            | NematicError::File(
-                FileError::Truncated { .. }
-                    | FileError::NotACheckpoint { .. }
-                    | FileError::Version { .. }
-                    | FileError::Schema { .. }
-                    | FileError::Corrupt { .. }
-            )
-    )
-}
-
-fn sample(s: &topo_nematic::NematicSample) -> NematicSample {
+fn sample(s: &topo_nematic::record::NematicSample) -> NematicSample {
     NematicSample {
         time: s.time,
         energy: s.energy.total(),
@@ -408,18 +368,5 @@ fn sample(s: &topo_nematic::NematicSample) -> NematicSample {
         max_speed: s.max_speed,
         power: None,
         flow_correlation: s.flow_correlation,
-    }
-}
-
-/// One line of progress.
-fn told(p: &Progress) -> String {
-    let energy = p.energy.map_or(String::new(), |f| format!(", F {f:.4e}"));
-    match p.phase {
-        Phase::Charge => format!(
-            "charging: step {}, rms H {:.1e}{energy}",
-            p.step, p.rms_field
-        ),
-        Phase::FinalState => format!("final state: step {}, rms H {:.1e}", p.step, p.rms_field),
-        Phase::Discharge => format!("discharging: step {}, t {:.3e}{energy}", p.step, p.time),
     }
 }

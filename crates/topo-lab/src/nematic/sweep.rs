@@ -163,7 +163,7 @@ pub fn estimate_nematic_sweep(
 mod tests {
     use std::path::Path;
 
-    use topo_core::Interrupt;
+    use topo_core::{Interrupt, Phase};
 
     use super::*;
 
@@ -217,8 +217,8 @@ mod tests {
             ..settings(folder.path(), 1)
         };
         let report = run_nematic_sweep(&scene, &stopping, &|event| {
-            if let Event::Working { what, .. } = event
-                && what.starts_with("discharging: step 4")
+            if let Event::Progress { progress, .. } = event
+                && (progress.phase, progress.step) == (Phase::Discharge, 4)
             {
                 stop.request();
             }
@@ -260,15 +260,15 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let calm = run_nematic_sweep(&scene, &settings(folder.path(), 1), &|_| {}).unwrap();
         let torn = tempfile::tempdir().unwrap();
-        let stop_in = |phase: &str| {
+        let stop_in = |phase: Phase| {
             let stop = Interrupt::new();
             let stopping = SweepSettings {
                 interrupt: stop.clone(),
                 ..settings(torn.path(), 1)
             };
             run_nematic_sweep(&scene, &stopping, &|event| {
-                if let Event::Working { what, .. } = event
-                    && what.starts_with(phase)
+                if let Event::Progress { progress, .. } = event
+                    && (progress.phase, progress.step) == (phase, 4)
                 {
                     stop.request();
                 }
@@ -276,7 +276,7 @@ mod tests {
             .unwrap();
         };
         for damaged in ["charge-", "discharge-", "snapshots-"] {
-            stop_in("discharging: step 4");
+            stop_in(Phase::Discharge);
             let case = torn.path().join(&scene.folder).join(&calm.rows[0].case);
             let mut n_found = 0;
             for entry in std::fs::read_dir(&case).unwrap() {

@@ -1,17 +1,17 @@
 //! Where a case runs, and the folder that it writes.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 use topo_analysis::write_table;
-use topo_core::write_atomic_bytes;
+use topo_core::{Progress, write_atomic_bytes};
 
 use super::name::value;
 use super::row::Row;
 use crate::LabError;
 use crate::battery::Battery;
-use crate::folder::{Outcome, digests, forget_file, make_folder};
+use crate::folder::{Outcome, digests, forget_checkpoints, forget_file, make_folder};
 use crate::progress::{Event, SweepSettings};
 
 /// Where and how a case runs.
@@ -43,6 +43,43 @@ impl<'a> Place<'a> {
             name: self.name,
             what,
         });
+    }
+
+    /// Reports how far the case is.
+    pub fn progressed(&self, progress: &Progress) {
+        (self.progress)(Event::Progress {
+            name: self.name,
+            progress,
+        });
+    }
+
+    /// The checkpoint file of one of the case's phases.
+    pub fn checkpoint(&self, phase: &str) -> PathBuf {
+        let name = format!("{phase}-{}.checkpoint", self.fingerprint);
+        self.folder.join(name)
+    }
+
+    /// Reports that the case cannot go on from its checkpoint.
+    pub(crate) fn tell_damaged(&self) {
+        (self.progress)(Event::Replaced {
+            names: &[self.name.to_owned()],
+            reason: "its checkpoint is damaged",
+        });
+    }
+
+    /// Runs the case; where a checkpoint cannot be used, that is reported, all checkpoints are forgotten, and the case begins anew.
+    pub(crate) fn or_anew<T>(
+        &self,
+        attempt: impl Fn() -> Result<T, LabError>,
+    ) -> Result<T, LabError> {
+        match attempt() {
+            Err(error) if error.is_unusable_checkpoint() => {
+                self.tell_damaged();
+                forget_checkpoints(self.folder, "")?;
+                attempt()
+            }
+            other => other,
+        }
     }
 
     /// Opens the folder for the files of a case that has come to its end; what is there of an earlier run is replaced.

@@ -7,9 +7,9 @@ use super::hooks::RunHooks;
 use super::record::{ChargeReport, ChargeStop};
 use crate::kernel::run::Kernel;
 use crate::memory::ByteAccount;
-use crate::{
-    EnergyParts, NematicError, NematicState, OrderParameter, Particle, Ring, order_parameter, ring,
-};
+use crate::order::{OrderParameter, order_parameter};
+use crate::ring::{Ring, ring};
+use crate::{EnergyParts, NematicError, NematicState, Particle};
 
 /// A charged battery: the relaxed nematic, and how it got there.
 #[derive(Debug, Clone)]
@@ -145,7 +145,12 @@ impl NematicBattery {
             coarse_start: false,
             ..settings.clone()
         };
-        let charged = coarse.relax(&coarse_settings, None, &mut hooks.without_files(), false)?;
+        let charged = coarse.relax(
+            &coarse_settings,
+            None,
+            &mut RunHooks::new(hooks.interrupt()),
+            false,
+        )?;
         Ok(charged.state.interpolated(&fine))
     }
 }

@@ -1,7 +1,9 @@
 //! The state that a switched nematic relaxes to: released energy counts from there.
 
+use topo_core::{Phase, Progress};
+
 use super::NematicBattery;
-use super::hooks::{Phase, Progress, RunHooks};
+use super::hooks::RunHooks;
 use super::record::{FinalSource, FinalState};
 use super::switch::{SwitchTarget, SwitchedNematic, extend_into_cut_cells};
 use crate::kernel::run::Kernel;
@@ -89,9 +91,9 @@ impl SwitchedNematic {
         relaxation.set(start.q_tensor());
         let mut last_tilt: Option<f64> = None;
         let mut source = FinalSource::Unconverged;
-        while relaxation.clock.n_steps < MAX_STEPS && !hooks.is_interrupted() {
+        while relaxation.fire.n_steps() < MAX_STEPS && !hooks.is_interrupted() {
             let rms_field = relaxation.step();
-            let step = relaxation.clock.n_steps;
+            let step = relaxation.fire.n_steps();
             if !rms_field.is_finite() {
                 return Err(NematicError::Diverged { step });
             }
@@ -102,11 +104,9 @@ impl SwitchedNematic {
             let steady = last_tilt.is_some_and(|last| (tilt - last).abs() < STEADY_TILT);
             last_tilt = Some(tilt);
             hooks.report(&Progress {
-                phase: Phase::FinalState,
                 step,
-                time: 0.0,
-                energy: None,
-                rms_field,
+                rms_field: Some(rms_field),
+                ..Progress::at(Phase::FinalState)
             });
             if rms_field < EQUILIBRIUM && steady {
                 source = FinalSource::Relaxed;

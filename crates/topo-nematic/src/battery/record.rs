@@ -1,13 +1,19 @@
-//! What a phase of a run leaves behind.
+//! What charges and discharges leave behind: reports, samples, the final state.
 
 use std::fmt;
 
+use serde::ser::SerializeMap;
 use serde::{Deserialize, Serialize};
-use topo_core::{Counters, DischargeCurve, Ledger, RejectionCounts, StopReason};
+use topo_core::PhaseExtension;
 
-use super::minimum::MinimumReport;
+pub use super::minimum::MinimumReport;
+pub use topo_core::MinimumState;
+
+use crate::EnergyParts;
+use crate::flow::FlowCounters;
 use crate::memory::ByteAccount;
-use crate::{EnergyParts, FlowCounters, OrderParameter, Ring};
+use crate::order::OrderParameter;
+use crate::ring::Ring;
 
 /// Channels by which energy is dissipated, as tables name them.
 pub(crate) const CHANNELS: [&str; 2] = ["rotation", "viscous"];
@@ -134,41 +140,35 @@ pub struct FlowReport {
     pub boundary_residual: f64,
 }
 
-/// Counters and guards of a discharge.
-#[derive(Debug, Clone, Serialize)]
-pub struct PhaseReport {
-    /// Why it ended.
-    pub stop: StopReason,
-    /// Time it covered, in tau_N.
-    pub time: f64,
-    /// Accepted steps.
-    pub n_steps: u64,
-    /// Refused steps by name.
-    pub rejections: RejectionCounts,
-    /// Work of the integrator.
-    pub counters: Counters,
-    /// Relative residual of the energy account.
-    pub ledger_residual: f64,
-    /// The energy account, in L xi_N.
-    pub ledger: Ledger,
+/// What only a nematic reports of a discharge.
+#[derive(Debug, Clone)]
+pub struct NematicPhase {
     /// Bytes by component.
     pub bytes: ByteAccount,
     /// Passes over the field for the second elastic constant, since the run began or went on.
     pub n_second_passes: u64,
-    /// Processor seconds of the calling thread.
-    pub cpu_seconds: f64,
     /// The flow; none if none was modelled.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub flow: Option<FlowReport>,
 }
 
-/// What a discharge leaves behind.
-#[derive(Debug, Clone, Serialize)]
-pub struct RunRecord {
-    /// Energies at every accepted step: times in tau_N, energies in L xi_N.
-    pub curve: DischargeCurve,
-    /// The nematic at output times.
-    pub samples: Vec<NematicSample>,
-    /// Counters and guards.
-    pub report: PhaseReport,
+impl PhaseExtension for NematicPhase {
+    fn n_bytes(&self) -> u64 {
+        self.bytes.total()
+    }
+
+    fn write_after<M: SerializeMap>(&self, cpu_seconds: f64, map: &mut M) -> Result<(), M::Error> {
+        map.serialize_entry("bytes", &self.bytes)?;
+        map.serialize_entry("n_second_passes", &self.n_second_passes)?;
+        map.serialize_entry("cpu_seconds", &cpu_seconds)?;
+        match &self.flow {
+            Some(flow) => map.serialize_entry("flow", flow),
+            None => Ok(()),
+        }
+    }
 }
+
+/// Counters and guards of a discharge: times in tau_N, energies in L xi_N.
+pub type PhaseReport = topo_core::PhaseReport<NematicPhase>;
+
+/// What a discharge leaves behind: times in tau_N, energies in L xi_N.
+pub type RunRecord = topo_core::RunRecord<NematicSample, NematicPhase>;

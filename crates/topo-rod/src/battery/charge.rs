@@ -1,10 +1,12 @@
 //! Charging: the twisted rod relaxes with its ends fused.
 
 use serde::{Deserialize, Serialize};
-use topo_core::{Interrupt, Schedule, Scheduled, StopReason, positive};
+use topo_core::{Phase, Schedule, StopReason, positive};
 
-use super::record::{CurveRecorder, RunRecord, SampleRecorder, Scales};
-use super::{RodBattery, RodSimulation};
+use super::RodBattery;
+use super::hooks::RunHooks;
+use super::phase::{Course, Finished, RodPhaseRun};
+use super::record::{Recorder, RunRecord, Scales};
 use crate::{Ends, RodError, RodState};
 
 /// How long a rod is charged and how often it is looked at.
@@ -58,53 +60,48 @@ impl RodBattery {
     /// A run that cannot go on keeps what it has and says why in the report.
     ///
     /// # Errors
-    /// A setting out of range, or a start curve that has no finite energy.
+    /// A setting out of range, a start curve that has no finite energy, or a checkpoint that cannot be used.
     pub fn charge(
         &self,
         settings: &ChargeSettings,
-        interrupt: &Interrupt,
+        hooks: &mut RunHooks<'_>,
     ) -> Result<ChargedRod, RodError> {
         settings.checked()?;
         let state = self.start.clone();
         let mut model = self.model(&state, Ends::default())?;
         model.start(&state)?;
         let scales = Scales::of(&state);
-        let parts = model.parts().clone();
-        let mut simulation = RodSimulation::new(model, state, &self.accuracy, interrupt)?;
-        let mut curve = CurveRecorder::new(scales, &parts);
-        let has_twist = self.parameters.twist.is_some();
-        let mut samples = SampleRecorder::new(scales, self.tube, has_twist, &parts);
-        let until = settings.duration * scales.time;
         let outputs = Schedule::log_spaced(
             settings.first_output * scales.time,
             settings.outputs_per_decade,
         )?;
-        let mut stop = {
-            let (mut see_step, mut see_sample) = (
-                |s: &topo_core::Sample<'_, RodState>| curve.record(s),
-                |s: &topo_core::Sample<'_, RodState>| samples.record(s),
-            );
-            let mut observers = [
-                Scheduled::new(Schedule::always(), &mut see_step),
-                Scheduled::new(outputs, &mut see_sample),
-            ];
-            simulation.run(until, &mut observers, &mut |_| None)
+        let has_twist = self.parameters.twist.is_some();
+        let recorder = Recorder::new(scales, self.tube, has_twist, model.parts(), outputs);
+        let course = Course {
+            phase: Phase::Charge,
+            until: settings.duration * scales.time,
+            release: None,
         };
-        samples.record(&simulation.sample());
-        if let Some(drift) = samples.link_drift.filter(|d| *d > self.guards.link_drift) {
+        let system = (model, state);
+        let mut run = RodPhaseRun::begin(self, course, system, recorder, settings, hooks)?;
+        let stop = run.go(hooks)?;
+        let Finished {
+            mut record, state, ..
+        } = run.finish(stop, hooks)?;
+        let report = &mut record.report;
+        let drift = report.own.link_drift;
+        if let Some(drift) = drift.filter(|d| *d > self.guards.link_drift) {
             tracing::error!(drift, "the linking number of a closed rod has drifted");
-            stop = StopReason::Failed {
+            report.stop = StopReason::Failed {
                 why: topo_core::Rejection::Fatal {
                     what: "Tw + Wr of the closed rod drifted: strands have crossed",
                 },
             };
         }
-        let record = RunRecord::new(&simulation, stop, curve, samples);
-        let density = self.energy_density(simulation.state());
         Ok(ChargedRod {
             battery: self.clone(),
-            state: simulation.into_state(),
-            density,
+            density: self.energy_density(&state),
+            state,
             record,
         })
     }

@@ -1,13 +1,13 @@
 //! Discharging: the cut rod opens until its elastic energy is released.
 
 use serde::{Deserialize, Serialize};
-use topo_core::{Interrupt, Ledger, Sample, Schedule, Scheduled, StopReason, in_range, positive};
+use topo_core::{Phase, Schedule, StopReason, in_range, positive};
 
-use super::RodSimulation;
 use super::cut::CutRod;
-use super::record::{CurveRecorder, RunRecord, SampleRecorder, Scales};
-use super::tips::tips_have_parted;
-use crate::{Ends, RodError, RodState};
+use super::hooks::RunHooks;
+use super::phase::{Course, Finished, RodPhaseRun};
+use super::record::{Recorder, RunRecord, Scales};
+use crate::{Ends, RodError};
 
 /// How far a discharge is followed and how often it is looked at.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -86,74 +86,47 @@ impl CutRod {
     /// Lets the open rod go.
     ///
     /// # Errors
-    /// A setting out of range, or end conditions that contradict each other.
+    /// A setting out of range, end conditions that contradict each other, or a checkpoint that cannot be used.
     pub fn discharge(
         &self,
         settings: &DischargeSettings,
-        interrupt: &Interrupt,
+        hooks: &mut RunHooks<'_>,
     ) -> Result<Discharge, RodError> {
         let battery = self.charged.battery();
-        let (parameters, tube) = (battery.parameters(), battery.tube());
-        settings.checked(parameters.twist.is_some())?;
+        let has_twist = battery.parameters().twist.is_some();
+        settings.checked(has_twist)?;
         let state = self.state.clone();
         let mut model = battery.model(&state, settings.ends)?;
         model.set_cyclic(true);
         let parts = model.parts().clone();
-        let elastic_of = |books: &Ledger| parts.elastic_of(books);
         let before = &self.charged.record().report.ledger;
-        let (closed, start) = (before.stored_total(), elastic_of(before));
+        let (closed, start) = (before.stored_total(), parts.elastic_of(before));
         model.start(&state)?;
         let scales = Scales::of(&state);
-        let elastic = |s: &Sample<'_, RodState>| elastic_of(s.ledger);
         let opened = model.account().stored_total();
-        let after_cut = elastic_of(model.account());
+        let after_cut = parts.elastic_of(model.account());
         model.record_cut(closed, closed - opened);
-        let window = model.pairs().window().outer();
-        let mut simulation = RodSimulation::new(model, state, battery.accuracy(), interrupt)?;
-        let mut curve = CurveRecorder::new(scales, &parts);
-        let has_twist = parameters.twist.is_some();
-        let mut samples = SampleRecorder::new(scales, tube, has_twist, &parts);
         let outputs = Schedule::log_spaced(
             settings.first_output * scales.time,
             settings.outputs_per_decade,
         )?;
-        let (until, goal) = (
-            settings.longest * scales.time,
-            (1.0 - settings.until_released) * after_cut,
-        );
-        let mut parted = None;
-        let stop = {
-            let mut see_step = |s: &Sample<'_, RodState>| curve.record(s);
-            let mut see_sample = |s: &Sample<'_, RodState>| samples.record(s);
-            let mut observers = [
-                Scheduled::new(Schedule::always(), &mut see_step),
-                Scheduled::new(outputs, &mut see_sample),
-            ];
-            let mut has_parted = false;
-            let mut stop = simulation.run(until, &mut observers, &mut |s| {
-                if elastic(s) <= goal {
-                    return Some("released".to_owned());
-                }
-                has_parted = tips_have_parted(s.state, tube.contact_diameter, window);
-                has_parted.then(|| "tips parted".to_owned())
-            });
-            if has_parted {
-                parted = Some(simulation.time() / scales.time);
-                simulation.modify(|model, _| model.set_cyclic(false));
-                stop = simulation.run(until, &mut observers, &mut |s| {
-                    (elastic(s) <= goal).then(|| "released".to_owned())
-                });
-            }
-            stop
+        let recorder = Recorder::new(scales, battery.tube(), has_twist, &parts, outputs);
+        let course = Course {
+            phase: Phase::Discharge,
+            until: settings.longest * scales.time,
+            release: Some([after_cut, (1.0 - settings.until_released) * after_cut]),
         };
-        samples.record(&simulation.sample());
-        let record = RunRecord::new(&simulation, stop, curve, samples);
+        let of = (settings, before);
+        let system = (model, state);
+        let mut run = RodPhaseRun::begin(battery, course, system, recorder, &of, hooks)?;
+        let stop = run.go(hooks)?;
+        let Finished { record, parted, .. } = run.finish(stop, hooks)?;
         Ok(Discharge {
             at: self.at,
             removed: (closed - opened) / scales.energy,
             start: start / scales.energy,
             after_cut: after_cut / scales.energy,
-            parted,
+            parted: parted.map(|time| time / scales.time),
             record,
         })
     }

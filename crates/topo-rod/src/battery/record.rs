@@ -1,17 +1,19 @@
 //! What a phase of a run leaves behind: energies at every step, states at output times, and a report.
 
+use serde::ser::SerializeMap;
+use serde::{Deserialize, Serialize};
+use topo_core::{DischargeCurve, Ledger, PhaseExtension, Sample, Schedule, StopReason};
 use topo_core::{reference_energy, reference_time};
 
-use serde::Serialize;
-use topo_core::{Counters, DischargeCurve, Ledger, RejectionCounts, Sample, StopReason};
-
+use super::simulation::RodSimulation;
+use super::tips::tips_have_parted;
 use crate::contact::ContactPairs;
 use crate::energy::{RodParts, StoredEnergy};
 use crate::model::{CHANNELS, WorkAccount};
-use crate::{RodState, Tube};
+use crate::{Chain, RodState, Tube};
 
 /// The rod at one output time.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct RodSample {
     /// Time since the start of the phase, in T_0.
     pub time: f64,
@@ -42,43 +44,39 @@ impl RodSample {
     }
 }
 
-/// Counters and guards of a phase.
-#[derive(Debug, Clone, Serialize)]
-pub struct PhaseReport {
-    /// Why it ended.
-    pub stop: StopReason,
-    /// Time it covered, in T_0.
-    pub time: f64,
-    /// Accepted steps.
-    pub n_steps: u64,
-    /// Refused steps by name.
-    pub rejections: RejectionCounts,
-    /// Work of the integrator.
-    pub counters: Counters,
+/// What only a rod reports of a phase.
+#[derive(Debug, Clone)]
+pub struct RodPhase {
+    /// Parts of the stored energy, in the order of curve and samples.
+    pub parts: RodParts,
     /// Work of the model by component.
     pub work: WorkAccount,
-    /// Relative residual of the energy account.
-    pub ledger_residual: f64,
-    /// The energy account, per area in E_b h.
-    pub ledger: Ledger,
     /// Least distance of vertices of different strands over the contact diameter; none if none came in reach.
     pub min_distance_over_contact: Option<f64>,
     /// Largest |Δ(Tw + Wr)| seen while closed, in turns; none for an open rod or one without twist.
     pub link_drift: Option<f64>,
 }
 
-/// What a phase leaves behind.
-#[derive(Debug, Clone, Serialize)]
-pub struct RunRecord {
-    /// Parts of the stored energy, in the order of curve and samples.
-    pub parts: RodParts,
-    /// Energies at every accepted step: times in T_0, energies in E_0.
-    pub curve: DischargeCurve,
-    /// The rod at output times.
-    pub samples: Vec<RodSample>,
-    /// Counters and guards.
-    pub report: PhaseReport,
+impl PhaseExtension for RodPhase {
+    fn n_bytes(&self) -> u64 {
+        self.work.n_bytes()
+    }
+
+    fn write_before<M: SerializeMap>(&self, map: &mut M) -> Result<(), M::Error> {
+        map.serialize_entry("work", &self.work)
+    }
+
+    fn write_after<M: SerializeMap>(&self, _: f64, map: &mut M) -> Result<(), M::Error> {
+        map.serialize_entry("min_distance_over_contact", &self.min_distance_over_contact)?;
+        map.serialize_entry("link_drift", &self.link_drift)
+    }
 }
+
+/// Counters and guards of a phase: times in T_0, the energy account per area in E_b h.
+pub type PhaseReport = topo_core::PhaseReport<RodPhase>;
+
+/// What a phase leaves behind: times in T_0, energies in E_0.
+pub type RunRecord = topo_core::RunRecord<RodSample, RodPhase>;
 
 /// The units in which times and energies are reported, T_0 and E_0 per cross section.
 #[derive(Debug, Clone, Copy)]
@@ -96,36 +94,168 @@ impl Scales {
     }
 }
 
-/// Observer of every step: the energy curve.
-pub(crate) struct CurveRecorder {
+/// What was seen of a phase so far.
+#[derive(Clone, Serialize, Deserialize)]
+pub(super) struct Seen {
     pub curve: DischargeCurve,
-    scales: Scales,
-    parts: RodParts,
+    pub samples: Vec<RodSample>,
+    link_start: Option<f64>,
+    pub link_drift: Option<f64>,
+    outputs: Schedule,
+}
+
+/// Observer of a phase: the energy curve at every step, the rod and what is measured on it at output times.
+pub(super) struct Recorder {
+    pub seen: Seen,
+    pub scales: Scales,
+    pub tube: Tube,
+    has_twist: bool,
+    pub parts: RodParts,
     /// Of the step in hand, so that none allocates.
     stored: Vec<f64>,
 }
 
-impl CurveRecorder {
-    pub(crate) fn new(scales: Scales, parts: &RodParts) -> Self {
+impl Recorder {
+    pub(super) fn new(
+        scales: Scales,
+        tube: Tube,
+        has_twist: bool,
+        parts: &RodParts,
+        outputs: Schedule,
+    ) -> Self {
         Self {
-            curve: DischargeCurve::new(parts.names(), CHANNELS),
+            seen: Seen {
+                curve: DischargeCurve::new(parts.names(), CHANNELS),
+                samples: Vec::new(),
+                link_start: None,
+                link_drift: None,
+                outputs,
+            },
             scales,
+            tube,
+            has_twist,
             parts: parts.clone(),
             stored: Vec::with_capacity(parts.len()),
         }
     }
 
-    pub(crate) fn record(&mut self, sample: &Sample<'_, RodState>) {
-        let time = sample.time / self.scales.time;
+    /// What does not fit a phase that begins like this one, of a rod joined like `chain`, at `time`.
+    pub(super) fn flaw(&self, seen: &Seen, chain: Chain, time: f64) -> Option<&'static str> {
+        let (fresh, now) = (&self.seen, time / self.scales.time);
+        let mut last = -1.0;
+        let in_order = seen.samples.iter().all(|s| {
+            let grows = s.time > last && s.time <= now;
+            last = s.time;
+            grows
+                && s.state.is_sound(chain)
+                && s.stored.len() == self.parts.len()
+                && s.stored.iter().chain(&s.dissipated).all(|x| x.is_finite())
+        });
+        let fits = seen.curve.parts() == fresh.curve.parts()
+            && seen.curve.channels() == fresh.curve.channels()
+            && seen.curve.time().last().is_none_or(|t| *t <= now)
+            && fresh.outputs.leads_to(&seen.outputs);
+        (!in_order || !fits).then_some("the samples are those of another run")
+    }
+
+    /// Goes on from what was seen before.
+    pub(super) fn recall(&mut self, mut seen: Seen) {
+        for sample in &mut seen.samples {
+            sample.stored = StoredEnergy::new(self.parts.clone(), sample.stored.to_vec());
+        }
+        self.seen = seen;
+    }
+
+    /// Looks at the present step.
+    pub(super) fn look(&mut self, sample: &Sample<'_, RodState>) {
+        self.look_at_energy(sample);
+        if self.seen.outputs.due(sample.time, sample.step) {
+            self.look_at_rod(sample);
+        }
+    }
+
+    fn look_at_energy(&mut self, sample: &Sample<'_, RodState>) {
+        let (time, curve) = (sample.time / self.scales.time, &mut self.seen.curve);
         // a run continued after a pause shows its last state again
-        if self.curve.time().last().is_none_or(|last| time > *last) {
+        if curve.time().last().is_none_or(|last| time > *last) {
             let (books, scale) = (sample.ledger, self.scales.energy);
             self.stored.clear();
             self.stored.extend(stored(&self.parts, books, scale));
             let dissipated = dissipated(books, scale);
-            if let Err(error) = self.curve.push(time, &self.stored, &dissipated) {
+            if let Err(error) = curve.push(time, &self.stored, &dissipated) {
                 tracing::warn!(%error, "a step is missing from the energy curve");
             }
+        }
+    }
+
+    /// Looks at the rod, unless that was done at this time.
+    pub(super) fn look_at_rod(&mut self, sample: &Sample<'_, RodState>) {
+        let (state, time, seen) = (sample.state, sample.time / self.scales.time, &mut self.seen);
+        if seen.samples.last().is_some_and(|last| last.time >= time) {
+            return;
+        }
+        let (books, scale) = (sample.ledger, self.scales.energy);
+        let energies = stored(&self.parts, books, scale).collect();
+        let (writhe, total_twist) = (state.writhe(), state.total_twist());
+        if state.is_closed() && self.has_twist {
+            let link = writhe + total_twist;
+            let start = *seen.link_start.get_or_insert(link);
+            seen.link_drift = Some(seen.link_drift.unwrap_or(0.0).max((link - start).abs()));
+        }
+        let mut pairs = ContactPairs::new(
+            self.tube.contact_diameter.max(self.tube.friction_range),
+            0.01,
+        );
+        let parted = !state.is_closed()
+            && tips_have_parted(state, self.tube.contact_diameter, pairs.window().outer());
+        pairs.set_cyclic(!parted);
+        pairs.update(state);
+        let touching =
+            |p: &&crate::contact::ActivePair| p.strands && p.distance < self.tube.contact_diameter;
+        seen.samples.push(RodSample {
+            time,
+            stored: StoredEnergy::new(self.parts.clone(), energies),
+            dissipated: dissipated(books, scale),
+            work: books.work() / scale,
+            writhe,
+            total_twist,
+            n_contacts: pairs.active().iter().filter(touching).count(),
+            min_distance: pairs.least_distance(),
+            end_to_end: state.end_to_end(),
+            state: state.clone(),
+        });
+    }
+
+    /// What the phase leaves behind.
+    pub(super) fn record(
+        self,
+        simulation: &RodSimulation,
+        stop: StopReason,
+        cpu_seconds: f64,
+    ) -> RunRecord {
+        let model = simulation.model();
+        let ledger = model.account().clone();
+        let distance = model.least_distance() / self.tube.contact_diameter;
+        let report = PhaseReport {
+            stop,
+            time: simulation.time() / self.scales.time,
+            n_steps: simulation.n_steps(),
+            rejections: simulation.rejections().clone(),
+            counters: simulation.counters(),
+            ledger_residual: ledger.relative_residual(),
+            ledger,
+            cpu_seconds,
+            own: RodPhase {
+                parts: self.parts,
+                work: model.work(),
+                min_distance_over_contact: Some(distance).filter(|d| d.is_finite()),
+                link_drift: self.seen.link_drift,
+            },
+        };
+        RunRecord {
+            curve: self.seen.curve,
+            samples: self.seen.samples,
+            report,
         }
     }
 }
@@ -141,101 +271,4 @@ fn stored<'a>(
 
 fn dissipated(books: &Ledger, scale: f64) -> [f64; 3] {
     CHANNELS.map(|name| books.dissipated_by(name).unwrap_or(0.0) / scale)
-}
-
-/// Observer at output times: the rod and what is measured on it.
-pub(crate) struct SampleRecorder {
-    pub samples: Vec<RodSample>,
-    pub link_drift: Option<f64>,
-    link_start: Option<f64>,
-    scales: Scales,
-    tube: Tube,
-    has_twist: bool,
-    parts: RodParts,
-}
-
-impl SampleRecorder {
-    pub(crate) fn new(scales: Scales, tube: Tube, has_twist: bool, parts: &RodParts) -> Self {
-        Self {
-            samples: Vec::new(),
-            link_drift: None,
-            link_start: None,
-            scales,
-            tube,
-            has_twist,
-            parts: parts.clone(),
-        }
-    }
-
-    pub(crate) fn record(&mut self, sample: &Sample<'_, RodState>) {
-        let (state, time) = (sample.state, sample.time / self.scales.time);
-        if self.samples.last().is_some_and(|last| last.time >= time) {
-            return;
-        }
-        let (books, scale) = (sample.ledger, self.scales.energy);
-        let energies = stored(&self.parts, books, scale).collect();
-        let (writhe, total_twist) = (state.writhe(), state.total_twist());
-        if state.is_closed() && self.has_twist {
-            let link = writhe + total_twist;
-            let start = *self.link_start.get_or_insert(link);
-            self.link_drift = Some(self.link_drift.unwrap_or(0.0).max((link - start).abs()));
-        }
-        let mut pairs = ContactPairs::new(
-            self.tube.contact_diameter.max(self.tube.friction_range),
-            0.01,
-        );
-        let parted = !state.is_closed()
-            && super::tips::tips_have_parted(
-                state,
-                self.tube.contact_diameter,
-                pairs.window().outer(),
-            );
-        pairs.set_cyclic(!parted);
-        pairs.update(state);
-        let touching =
-            |p: &&crate::contact::ActivePair| p.strands && p.distance < self.tube.contact_diameter;
-        self.samples.push(RodSample {
-            time,
-            stored: StoredEnergy::new(self.parts.clone(), energies),
-            dissipated: dissipated(books, scale),
-            work: books.work() / scale,
-            writhe,
-            total_twist,
-            n_contacts: pairs.active().iter().filter(touching).count(),
-            min_distance: pairs.least_distance(),
-            end_to_end: state.end_to_end(),
-            state: state.clone(),
-        });
-    }
-}
-
-impl RunRecord {
-    pub(crate) fn new(
-        simulation: &super::RodSimulation,
-        stop: StopReason,
-        curve: CurveRecorder,
-        samples: SampleRecorder,
-    ) -> Self {
-        let model = simulation.model();
-        let ledger = model.account().clone();
-        let distance = model.least_distance() / samples.tube.contact_diameter;
-        let report = PhaseReport {
-            stop,
-            time: simulation.time() / curve.scales.time,
-            n_steps: simulation.n_steps(),
-            rejections: simulation.rejections().clone(),
-            counters: simulation.counters(),
-            work: model.work(),
-            ledger_residual: ledger.relative_residual(),
-            ledger,
-            min_distance_over_contact: Some(distance).filter(|d| d.is_finite()),
-            link_drift: samples.link_drift,
-        };
-        Self {
-            parts: curve.parts,
-            curve: curve.curve,
-            samples: samples.samples,
-            report,
-        }
-    }
 }

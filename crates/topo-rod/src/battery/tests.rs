@@ -3,15 +3,15 @@
 use std::f64::consts::{PI, TAU};
 
 use nalgebra::Vector3;
-use topo_core::Interrupt;
 
+use super::hooks::RunHooks;
 use super::record::Scales;
 use super::*;
 use crate::energy::StoredEnergy;
-use crate::{ChargeSettings, Reading, cut_candidates};
+use crate::{ChargeSettings, Protocol, Reading, cut_candidates};
 
 /// A right-handed trefoil on a torus; of tube, the thinner the torus the less.
-fn trefoil(minor: f64) -> Polyline {
+pub(super) fn trefoil(minor: f64) -> Polyline {
     let vertex = |k: usize| {
         let u = TAU * k as f64 / 200.0;
         let r = 2.0 + minor * (3.0 * u).cos();
@@ -72,11 +72,11 @@ fn val_reported_units_of_fifty_radii() {
         duration: 0.02,
         ..Default::default()
     };
-    let charged = battery.charge(&settings, &Interrupt::new()).unwrap();
+    let charged = battery.charge(&settings, &mut RunHooks::default()).unwrap();
     let record = charged.record();
     let last = record.samples.last().unwrap();
     assert!((record.report.time - 0.02).abs() < 1e-12 && (last.time - 0.02).abs() < 1e-12);
-    let names: Vec<&str> = record.parts.names().collect();
+    let names: Vec<&str> = record.report.own.parts.names().collect();
     assert_eq!(names, ["bend", "twist", "stretch", "contact"]);
     // the books are per area in E_b h
     for (part, stored) in last.stored.by_part() {
@@ -92,7 +92,7 @@ fn val_reported_units_of_fifty_radii() {
     // released shares count what bend, twist and stretch hold, not what strands in contact do
     let mut sample = last.clone();
     let energies = vec![1.0, 2.0, 4.0, 8.0];
-    sample.stored = StoredEnergy::new(record.parts.clone(), energies);
+    sample.stored = StoredEnergy::new(record.report.own.parts.clone(), energies);
     assert_eq!(sample.elastic(), 7.0);
 }
 
@@ -147,4 +147,32 @@ fn candidates_lie_at_their_vertices() {
         (found[0].vertex, found[0].at, found[0].density),
         (20, 0.25, 2.0)
     );
+}
+
+/// A protocol is its three steps, with a file a phase; interrupted it has no discharge, and goes on to the same bits.
+#[test]
+fn a_protocol_is_charge_cut_and_discharge() {
+    let battery = battery(0.4, Reading::Shrunk);
+    let mut protocol = Protocol::default();
+    protocol.charge.duration = 0.05;
+    protocol.discharge.longest = 0.05;
+    let hooks = &mut RunHooks::default();
+    let charged = battery.charge(&protocol.charge, hooks).unwrap();
+    let cut = charged.cut(protocol.cut).unwrap();
+    let by_hand = cut.discharge(&protocol.discharge, hooks).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("rod.checkpoint");
+    let interrupt = topo_core::Interrupt::new();
+    interrupt.request();
+    let hooks = &mut RunHooks::new(&interrupt).with_checkpoint(&path, 0.0);
+    assert!(battery.run(&protocol, hooks).unwrap().1.is_none() && path.exists());
+    for _ in 0..2 {
+        let hooks = &mut RunHooks::default().with_checkpoint(&path, 0.0);
+        let (again, run) = battery.run(&protocol, hooks).unwrap();
+        assert_eq!(again.state().vertices(), charged.state().vertices());
+        let [run, by_hand] =
+            [&run.unwrap(), &by_hand].map(|d| (d.after_cut, d.record.curve.clone()));
+        assert_eq!(run, by_hand);
+    }
+    assert!(folder.path().join("rod.checkpoint.discharge").exists());
 }

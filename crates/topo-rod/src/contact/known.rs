@@ -1,10 +1,12 @@
 //! Which pairs the pattern of a matrix holds.
 
+use serde::{Deserialize, Serialize};
+
 use super::{ActivePair, ContactPairs};
 use crate::RodState;
 
 /// The pairs of a sparse pattern, ascending: kept as long as all pairs in reach are among them and they are not many more.
-#[derive(Debug, Default)]
+#[derive(Debug, Default, Clone, Serialize, Deserialize)]
 pub(crate) struct KnownPairs {
     pairs: Vec<(u32, u32)>,
     /// Pairs in reach when the pattern was made.
@@ -15,6 +17,11 @@ pub(crate) struct KnownPairs {
 const FORESIGHT: f64 = 0.15;
 
 impl KnownPairs {
+    /// Whether all pairs are of a rod of `n` vertices.
+    pub(crate) fn are_of(&self, n: usize) -> bool {
+        self.pairs.iter().all(|&(i, j)| i < j && (j as usize) < n)
+    }
+
     /// The pairs held.
     pub(crate) fn list(&self) -> &[(u32, u32)] {
         &self.pairs

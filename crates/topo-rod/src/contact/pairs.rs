@@ -1,12 +1,13 @@
 //! Verlet list of vertex pairs, and the pairs in reach at the current state.
 
 use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
 
 use super::{BroadPhase, Core, CorePair, Window, arc_separation};
 use crate::RodState;
 
 /// A pair of vertices in reach of each other.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct ActivePair {
     /// Smaller index.
     pub i: u32,
@@ -46,7 +47,56 @@ pub struct ContactPairs {
     n_rebuilds: u64,
 }
 
+/// What a list remembers: where the rod was when it was built, from which it is built again.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(crate) struct PairsMemory {
+    cyclic: bool,
+    reference: Vec<Vector3<f64>>,
+    n_rebuilds: u64,
+    /// Room for listed pairs and for those in reach, which the account of bytes reports.
+    room: [usize; 2],
+}
+
+impl PairsMemory {
+    /// Makes it one that no run leaves behind.
+    #[cfg(test)]
+    pub(crate) fn spoil(&mut self) {
+        self.reference.truncate(3);
+    }
+
+    /// Whether it is that of a rod of `n` vertices.
+    pub(crate) fn is_of(&self, n: usize) -> bool {
+        let most = 2 * n * n;
+        (self.reference.is_empty() || self.reference.len() == n)
+            && self.reference.iter().flatten().all(|x| x.is_finite())
+            && self.room.iter().all(|room| *room <= most)
+            && self.n_rebuilds < topo_core::MOST_COUNTED
+    }
+}
+
 impl ContactPairs {
+    /// What the list remembers.
+    pub(crate) fn memory(&self) -> PairsMemory {
+        PairsMemory {
+            cyclic: self.cyclic,
+            reference: self.reference.clone(),
+            n_rebuilds: self.n_rebuilds,
+            room: [self.candidates.capacity(), self.active.capacity()],
+        }
+    }
+
+    /// Builds the list again that was remembered; `state` is any state of the same rod.
+    pub(crate) fn recall(&mut self, state: &RodState, memory: PairsMemory) {
+        self.cyclic = memory.cyclic;
+        self.candidates = Vec::with_capacity(memory.room[0]);
+        self.active = Vec::with_capacity(memory.room[1]);
+        self.reference.clear();
+        if !memory.reference.is_empty() {
+            self.rebuild(&state.with_vertices(memory.reference));
+        }
+        self.n_rebuilds = memory.n_rebuilds;
+    }
+
     /// A list for strands that act on each other up to the distance `reach`.
     pub fn new(reach: f64, skin: f64) -> Self {
         Self {

@@ -3,7 +3,7 @@
 use std::ops::Deref;
 use std::sync::Arc;
 
-use serde::{Serialize, Serializer};
+use serde::{Deserialize, Serialize, Serializer};
 use topo_core::Ledger;
 
 use super::EnergyTerm;
@@ -108,7 +108,7 @@ impl RodParts {
 }
 
 /// Stored energy by part; the numbers alone in the order of the parts.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct StoredEnergy {
     #[serde(skip)]

@@ -44,6 +44,19 @@ pub struct WorkAccount {
     pub matrix_bytes: usize,
 }
 
+impl WorkAccount {
+    /// Bytes held by all components together.
+    pub fn n_bytes(&self) -> u64 {
+        let bytes = [
+            self.contact_bytes,
+            self.twist_bytes,
+            self.friction_bytes,
+            self.matrix_bytes,
+        ];
+        bytes.iter().sum::<usize>() as u64
+    }
+}
+
 impl RodModel {
     /// Starts the account at `state` (a model is told once where its run starts).
     ///

@@ -1,5 +1,7 @@
 //! Pairs about to touch, which the Newton matrix counts as touching already.
 
+use serde::{Deserialize, Serialize};
+
 use crate::RodState;
 use crate::contact::{ActivePair, ContactPairs};
 
@@ -12,7 +14,7 @@ use crate::contact::{ActivePair, ContactPairs};
 /// a matrix that holds what should move makes an error that the embedded estimate does not see.
 ///
 /// The pairs are looked for only for a few steps after a refused one, as ordinary runs need none of this.
-#[derive(Debug)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub(super) struct Expected {
     pairs: Vec<ActivePair>,
     margin: f64,
@@ -34,6 +36,23 @@ impl Expected {
             prepared: None,
             n_wary: 0,
         }
+    }
+
+    /// Whether it is one for the same steps, of a rod of `n` vertices.
+    pub(super) fn is_like(&self, fresh: &Self, n: usize) -> bool {
+        let is_sound = |p: &ActivePair| {
+            let numbers = [p.weight, p.distance];
+            p.i < p.j
+                && (p.j as usize) < n
+                && p.normal.iter().chain(&numbers).all(|x| x.is_finite())
+        };
+        self.margin == fresh.margin && self.pairs.iter().all(is_sound)
+    }
+
+    /// Whether pairs are looked for.
+    #[cfg(test)]
+    pub(super) fn is_wary(&self) -> bool {
+        self.n_wary > 0
     }
 
     /// A matrix is asked for at the state `stamp`: when that happens twice, the first step from there was refused.

@@ -1,5 +1,6 @@
 //! What a rod's model keeps between steps, and names.
 
+use serde::{Deserialize, Serialize};
 use topo_core::Rejection;
 use topo_sparse::SparseError;
 
@@ -9,7 +10,7 @@ use crate::energy::Force;
 pub(crate) const CHANNELS: [&str; 3] = ["viscosity", "twist_viscosity", "friction"];
 
 /// What the ledger needs of the state accepted last.
-#[derive(Default)]
+#[derive(Clone, Default, Serialize, Deserialize)]
 pub(super) struct Accepted {
     pub(super) stamp: Option<u64>,
     pub(super) total: f64,
@@ -21,7 +22,7 @@ pub(super) struct Accepted {
 }
 
 /// The Newton matrix in use: made for which step length, and how often used.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 pub(super) struct Frozen {
     pub(super) g_dt: f64,
     pub(super) n_uses: usize,

@@ -8,10 +8,10 @@ use crate::output;
 use rayon::prelude::*;
 use serde_json::json;
 use std::path::Path;
-use topo_core::write_atomic_bytes;
+use topo_core::{Interrupt, write_atomic_bytes};
 use topo_knots::{
-    KnotEntry, KnotError, KnotTable, TightKnot, TightenSettings, ideal, parse_braid, read_curve,
-    second_opinion, tighten_by_hops, write_curve,
+    KnotEntry, KnotError, KnotTable, SecondOpinion, TightKnot, TightenSettings, ideal_until,
+    parse_braid, read_curve, second_opinion_until, tighten_by_hops_until, write_curve,
 };
 
 pub(super) fn run(args: &TightenArgs, knots: &KnotTable) -> Result<(), CliError> {
@@ -28,27 +28,47 @@ pub(super) fn run(args: &TightenArgs, knots: &KnotTable) -> Result<(), CliError>
             source,
         })?;
     }
-    let made: Vec<Result<Row, CliError>> = entries
-        .par_iter()
-        .with_max_len(1)
-        .map(|entry| {
-            interrupt::check(&stop)?;
-            let tight = match args.hops {
-                0 => ideal(entry, &settings, Some(&cache))?,
-                n => tighten_by_hops(entry, n, &settings)?,
-            };
-            let row = Row::new(entry, &tight, write(entry, &tight, args, folder)?);
-            say!("{}", row.told);
-            Ok(row)
-        })
-        .collect();
-    let rows = made.into_iter().collect::<Result<Vec<Row>, _>>()?;
-    let text = table::markdown(&rows);
-    let path = folder.join("table.md");
-    write_atomic_bytes(&path, text.as_bytes()).map_err(KnotError::from)?;
-    output::table(&path);
-    say!("curves, certificates and table: {}", folder.display());
-    Ok(())
+    let one = |entry: &KnotEntry| -> Result<Option<Row>, CliError> {
+        if stop.is_requested() {
+            return Ok(None);
+        }
+        let made = match args.hops {
+            0 => ideal_until(entry, &settings, Some(&cache), &stop),
+            n => tighten_by_hops_until(entry, n, &settings, &stop),
+        };
+        let (tight, is_whole) = match made {
+            Err(KnotError::Interrupted { best }) => (*best, false),
+            made => (made?, true),
+        };
+        if !is_whole && is_beaten(&tight, folder) {
+            note!("{}: the shorter curve of an earlier run stays", tight.name);
+            return Ok(None);
+        }
+        let row = Row::new(entry, &tight, write(entry, &tight, args, folder, &stop)?);
+        say!("{}", row.told);
+        Ok(Some(row))
+    };
+    let made: Vec<_> = entries.par_iter().with_max_len(1).map(one).collect();
+    let made = made.into_iter().collect::<Result<Vec<Option<Row>>, _>>()?;
+    let rows: Vec<Row> = made.into_iter().flatten().collect();
+    if !rows.is_empty() {
+        let path = folder.join("table.md");
+        let text = table::markdown(&rows);
+        write_atomic_bytes(&path, text.as_bytes()).map_err(KnotError::from)?;
+        output::table(&path);
+        say!("curves, certificates and table: {}", folder.display());
+    }
+    interrupt::check(&stop)
+}
+
+/// Whether an earlier run has left a shorter curve: one that was cut short does not take its place.
+fn is_beaten(tight: &TightKnot, folder: &Path) -> bool {
+    let path = folder.join(format!("{}.json", tight.name));
+    let text = std::fs::read_to_string(path).unwrap_or_default();
+    let earlier: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
+    earlier["length_over_radius"]
+        .as_f64()
+        .is_some_and(|length| length < tight.length_over_radius)
 }
 
 /// The knots that the arguments ask for.
@@ -89,19 +109,35 @@ fn settings(args: &TightenArgs) -> TightenSettings {
     }
 }
 
+/// The second method's opinion, where it is asked for; none when interrupted.
+fn second(
+    tight: &TightKnot,
+    args: &TightenArgs,
+    stop: &Interrupt,
+) -> Result<Option<SecondOpinion>, CliError> {
+    if !args.check || stop.is_requested() {
+        return Ok(None);
+    }
+    match second_opinion_until(tight, stop) {
+        Err(KnotError::Interrupted { .. }) => Ok(None),
+        second => Ok(Some(second?)),
+    }
+}
+
 /// Writes curve and certificate; returns a line of numbers.
 fn write(
     entry: &KnotEntry,
     tight: &TightKnot,
     args: &TightenArgs,
     folder: &Path,
+    stop: &Interrupt,
 ) -> Result<String, CliError> {
     let path = |extension: &str| folder.join(format!("{}.{extension}", tight.name));
     write_curve(&path(&args.format), &tight.curve)?;
     let length = tight.length_over_radius;
     let excess = table::excess(entry, tight);
     let certificate = &tight.certificate;
-    let second = args.check.then(|| second_opinion(tight)).transpose()?;
+    let second = second(tight, args, stop)?;
     let apart = second.as_ref().map(|s| s.length_over_radius / length - 1.0);
     let record = json!({
         "knot": tight.name, "vertices": tight.curve.n_vertices(), "length_over_radius": length,
@@ -138,7 +174,13 @@ fn write(
             second.length_over_radius
         );
     }
-    if !certificate.converged {
+    if !certificate.converged && stop.is_requested() {
+        line += "  INTERRUPTED: the best curve so far is kept";
+        output::warning(format!(
+            "{}: interrupted, the best curve so far is kept",
+            tight.name
+        ));
+    } else if !certificate.converged {
         line += "  NOT CONVERGED: the best curve is kept";
         output::warning(format!(
             "{}: not converged, the best curve is kept",
