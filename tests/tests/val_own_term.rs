@@ -389,7 +389,8 @@ fn law_an_observable_from_outside_is_found_in_every_table() {
     let plain = ElasticScene::parse(&text, Path::new("circle.toml")).unwrap();
     let run = |scene: &ElasticScene| run_sweep(scene, &table, &settings, &|_| {}).unwrap();
     assert_eq!(run(&plain).n_computed, 1);
-    let scene = plain.clone().with_observable("gyration", gyration).unwrap();
+    let scene = ElasticScene::parse(&text, Path::new("gyration.toml")).unwrap();
+    let scene = scene.with_observable("gyration", gyration).unwrap();
     let report = run(&scene);
     assert_eq!((report.n_computed, report.failed.len()), (1, 0));
     let results = scene.results(folder.path());
@@ -416,6 +417,9 @@ fn law_an_observable_from_outside_is_found_in_every_table() {
         let refused = plain.clone().with_observable(name, gyration).unwrap_err();
         assert!(refused.to_string().contains("observable"), "{refused}");
     }
+    let mut same = scene.clone();
+    same.folder.clone_from(&plain.folder);
+    assert!(run_sweep(&same, &table, &settings, &|_| {}).is_err());
     assert!(scene.with_observable("gyration", gyration).is_err());
 }
 

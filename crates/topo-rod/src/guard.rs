@@ -50,6 +50,15 @@ const SHARE: f64 = 0.1;
 const ROUNDING: f64 = 1e-14;
 
 impl RiseBudget {
+    /// The budget after a rise that hardly counts.
+    #[cfg(test)]
+    pub(crate) fn after_a_rise(self) -> Self {
+        Self {
+            risen: self.risen + 1e-9 * self.scale,
+            ..self
+        }
+    }
+
     /// For a run that starts at `energy`.
     pub(crate) fn new(energy: f64) -> Self {
         Self {

@@ -208,17 +208,20 @@ struct Stopped {
 const STEPS: u64 = 3;
 
 impl Stopped {
-    /// Stopped at the first step that is `wanted`.
-    fn of(setup: Setup, wanted: fn(&ModelMemory) -> bool) -> Self {
+    /// Stopped at the first step that is `wanted`, by its memory and that of the next one.
+    fn of(setup: Setup, wanted: fn(&ModelMemory, &ModelMemory) -> bool) -> Self {
         let place = folder();
         let stop = |at: u64| {
             let reports = setup.run(place.path(), Some((Phase::Discharge, at)));
             reports.map(|_| kept(place.path(), "discharge")).unwrap()
         };
         let fresh = stop(1);
+        let mut now = stop(8);
         let (at, saved) = (8..200)
-            .map(|at| (at, stop(at)))
-            .find(|(_, saved)| wanted(&saved.1.2))
+            .find_map(|at| {
+                let before = std::mem::replace(&mut now, stop(at + 1));
+                wanted(&before.1.2, &now.1.2).then_some((at, before))
+            })
             .expect("such a step");
         // in one go, from the beginning
         std::fs::remove_file(place.path().join("discharge")).unwrap();
@@ -254,9 +257,9 @@ impl Stopped {
 fn every_part_of_the_memory_is_needed() {
     let explicit = setup(IntegratorKind::Rkc2, Some(2.0), true);
     let stopped = [
-        Stopped::of(driven(), ModelMemory::is_wary),
+        Stopped::of(driven(), |now, _| now.is_wary()),
         Stopped::of(driven(), ModelMemory::is_reusing),
-        Stopped::of(explicit, |_| true),
+        Stopped::of(explicit, |_, _| true),
     ];
     for place in &stopped {
         let alike = |change: &dyn Fn(&mut Saved, &mut Saved)| place.goes_on_alike(change);
