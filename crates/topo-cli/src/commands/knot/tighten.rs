@@ -132,6 +132,10 @@ fn write(
     folder: &Path,
     stop: &Interrupt,
 ) -> Result<String, CliError> {
+    std::fs::create_dir_all(folder).map_err(|source| CliError::File {
+        path: folder.to_owned(),
+        source,
+    })?;
     let path = |extension: &str| folder.join(format!("{}.{extension}", tight.name));
     write_curve(&path(&args.format), &tight.curve)?;
     let length = tight.length_over_radius;
