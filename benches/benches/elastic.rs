@@ -1,8 +1,8 @@
 //! What a step of the elastic battery is made of: writhe, contact list, one charge.
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use nalgebra::Vector3;
-use topo_core::{Interrupt, Polyline};
+use topo_core::Vector3;
+use topo_core::{Polyline, RunHooks};
 use topo_rod::contact::ContactPairs;
 use topo_rod::{Accuracy, ChargeSettings, Guards, RodBattery, RodParameters, RodState};
 
@@ -48,7 +48,7 @@ fn elastic(c: &mut Criterion) {
     let mut group = c.benchmark_group("rod");
     group.sample_size(10);
     group.bench_function("charge of 0.02 T0, 200 edges", |b| {
-        b.iter(|| battery.charge(&brief, &Interrupt::new()));
+        b.iter(|| battery.charge(&brief, &mut RunHooks::default()));
     });
     group.finish();
 }

@@ -16,3 +16,8 @@ pub mod threads;
 #[cfg(doctest)]
 #[doc = include_str!("../../README.md")]
 pub struct Readme;
+
+/// As [`Readme`].
+#[cfg(doctest)]
+#[doc = include_str!("../../docs/extending.md")]
+pub struct Extending;

@@ -133,7 +133,7 @@ fn law_absent_terms_of_a_rod_cost_nothing() {
 
 #[test]
 fn law_absent_terms_of_a_nematic_cost_nothing() {
-    let plain = run_colloid(&colloid(), None).record.report;
+    let plain = run_colloid(&colloid(), None).record.report.own;
     assert_eq!((plain.bytes.flow, plain.bytes.second), (0, 0));
     assert_eq!((plain.flow, plain.n_second_passes), (None, 0));
     let everything = NematicParameters {
@@ -145,7 +145,8 @@ fn law_absent_terms_of_a_nematic_cost_nothing() {
     };
     let full = run_colloid(&everything, Some(FlowParameters::default()))
         .record
-        .report;
+        .report
+        .own;
     assert!(full.bytes.flow > 0 && full.flow.unwrap().counters.n_updates > 10);
     assert!(full.bytes.second > 0 && full.n_second_passes > 10);
     // The rest takes what it took.

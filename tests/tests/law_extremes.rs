@@ -118,44 +118,27 @@ fn assert_finite(run: &Discharge) {
 /// The middle of the range with one parameter at a time at its end, and the worst corners of the inner range.
 #[test]
 fn law_runs_at_the_extremes_finish_or_say_why() {
+    let twisted = |twist| Case { twist, ..MIDDLE };
+    let stretchable = |stretch_ratio| Case {
+        stretch_ratio,
+        ..MIDDLE
+    };
+    let rubbing = |friction| Case { friction, ..MIDDLE };
+    let touching = |contact| Case { contact, ..MIDDLE };
     let cases = [
         MIDDLE,
-        Case {
-            twist: 4.0,
-            ..MIDDLE
-        },
-        Case {
-            twist: -4.0,
-            ..MIDDLE
-        },
-        Case {
-            stretch_ratio: 0.5,
-            ..MIDDLE
-        },
-        Case {
-            stretch_ratio: 1000.0,
-            ..MIDDLE
-        },
+        twisted(4.0),
+        twisted(-4.0),
+        stretchable(0.5),
+        stretchable(1000.0),
         Case {
             n_edges: 50,
             ..MIDDLE
         },
-        Case {
-            friction: 0.0,
-            ..MIDDLE
-        },
-        Case {
-            friction: 10.0,
-            ..MIDDLE
-        },
-        Case {
-            contact: 5.0,
-            ..MIDDLE
-        },
-        Case {
-            contact: 500.0,
-            ..MIDDLE
-        },
+        rubbing(0.0),
+        rubbing(10.0),
+        touching(5.0),
+        touching(500.0),
         Case {
             twist: 2.0,
             stretch_ratio: 1.0,

@@ -2,9 +2,10 @@
 
 use std::f64::consts::TAU;
 
-use topo_nematic::{
-    Drive, Faces, FlowCoupling, FlowParameters, FlowSolver, Grid, Material, Particle, contract,
-};
+use topo_nematic::flow::{FlowCoupling, FlowSolver};
+use topo_nematic::stokes::Drive;
+use topo_nematic::tensor::contract;
+use topo_nematic::{Faces, FlowParameters, Grid, Material, Particle};
 
 const P: Faces = Faces::Periodic;
 const W: Faces = Faces::Wall;

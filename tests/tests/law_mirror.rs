@@ -54,21 +54,26 @@ fn mirrored(row: &SweepRow, name: &str, case: &str) -> SweepRow {
     }
 }
 
-/// Energies, times, shapes, twists, writhe, knot types and cut sites of 3_1, 4_1, 6_3 and a knot of an own folder, to the bit.
-#[test]
-fn law_mirrored_knots_give_mirrored_runs() {
-    let own = tempfile::tempdir().unwrap();
+/// A table with a trefoil of its own in `folder`, as a polygon.
+fn table_with_own(folder: &Path) -> KnotTable {
     let text = "name = \"tre\"\ncrossing_number = 3\nchirality = \"chiral\"\npolygon = \"tre.csv\"\n\
         [invariants]\nalexander = [1, -1, 1]\ndeterminant = 3\nsignature = -2\n";
-    std::fs::write(own.path().join("tre.toml"), text).unwrap();
+    std::fs::write(folder.join("tre.toml"), text).unwrap();
     let rows = closed_braid(&[1, 1, 2, -2, 1, 2]).unwrap();
     let rows = rows
         .vertices()
         .iter()
         .map(|x| format!("{},{},{}\n", x.x, x.y, x.z));
     let rows = format!("x,y,z\n{}", rows.collect::<String>());
-    std::fs::write(own.path().join("tre.csv"), rows).unwrap();
-    let table = KnotTable::builtin().with_folder(own.path()).unwrap();
+    std::fs::write(folder.join("tre.csv"), rows).unwrap();
+    KnotTable::builtin().with_folder(folder).unwrap()
+}
+
+/// Energies, times, shapes, twists, writhe, knot types and cut sites of 3_1, 4_1, 6_3 and a knot of an own folder, to the bit.
+#[test]
+fn law_mirrored_knots_give_mirrored_runs() {
+    let own = tempfile::tempdir().unwrap();
+    let table = table_with_own(own.path());
     let out = tempfile::tempdir().unwrap();
     for name in ["3_1", "6_2", "6_3", "tre"] {
         let knot = sweep(name, 1.0, &table, out.path());

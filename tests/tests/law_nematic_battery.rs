@@ -3,11 +3,12 @@
 use std::path::Path;
 
 use topo_core::Interrupt;
+use topo_core::Progress;
+use topo_nematic::record::ChargeStop;
 use topo_nematic::{
-    Anchoring, Boundary, ChargeSettings, ChargeStop, ChargedNematic, Discharge, DischargeSettings,
+    Anchoring, Boundary, ChargeSettings, ChargedNematic, Discharge, DischargeSettings,
     FlowParameters, FreeSurface, Material, NematicAccuracy, NematicBattery, NematicParameters,
-    NematicState, Precision, Progress, RunHooks, SurfacePattern, SwitchSettings, SwitchTarget,
-    Threads,
+    NematicState, Precision, RunHooks, SurfacePattern, SwitchSettings, SwitchTarget, Threads,
 };
 use topo_tests::threads::on_threads;
 
@@ -249,7 +250,8 @@ fn law_interrupted_discharges_go_on_to_the_same_bits() {
             assert_eq!(run.record.curve, whole.record.curve);
             assert_eq!(report.ledger_residual, expected.ledger_residual);
             assert_eq!(report.counters, expected.counters);
-            let counts = |r: &topo_nematic::PhaseReport| r.own.flow.as_ref().map(|f| f.counters);
+            let counts =
+                |r: &topo_nematic::record::PhaseReport| r.own.flow.as_ref().map(|f| f.counters);
             assert_eq!(counts(report), counts(expected));
             for (a, b) in run.record.samples.iter().zip(&whole.record.samples) {
                 assert_eq!(a, b);

@@ -67,7 +67,20 @@ fn check(row: &NematicRow, scene: &NematicScene, case: usize) {
     let strongest = (1..=40).max_by(|a, b| ring.modes[a - 1].total_cmp(&ring.modes[b - 1]));
     assert_eq!(row.ring_mode.map(|m| m as usize), strongest);
     assert_eq!(row.ring_amplitude, strongest.map(|m| ring.modes[m - 1]));
+    check_times(row, curve, whole);
 
+    assert_eq!(row.steps, report.n_steps);
+    let evaluations = charged.report().n_steps + report.counters.n_rate_evaluations;
+    assert_eq!(row.evaluations, evaluations);
+    let flow = report.own.flow.map(|f| f.counters).unwrap_or_default();
+    let counts = (row.stokes_updates, row.stokes_iterations);
+    assert_eq!(counts, (flow.n_updates, flow.n_boundary_solves));
+    assert_eq!(flow.n_updates > 0, case.flow.is_some());
+    assert!(row.warnings.is_empty(), "{}", row.warnings);
+}
+
+/// The times at which shares of the energy are released, `whole` being that before the switch, and the rate at the end.
+fn check_times(row: &NematicRow, curve: &DischargeCurve, whole: f64) {
     let shares = [0.5, 0.1, 0.01, 0.001];
     let of = |start: f64| shares.map(|left| crossing(curve, left * start));
     let counted = [
@@ -97,15 +110,6 @@ fn check(row: &NematicRow, scene: &NematicScene, case: usize) {
     let rate = 2.0_f64.ln() / (curve.time()[last] - crossing(curve, 2.0 * end));
     let found = row.late_rate.unwrap();
     assert!((found / rate - 1.0).abs() < 0.01, "{found} {rate}");
-
-    assert_eq!(row.steps, report.n_steps);
-    let evaluations = charged.report().n_steps + report.counters.n_rate_evaluations;
-    assert_eq!(row.evaluations, evaluations);
-    let flow = report.own.flow.map(|f| f.counters).unwrap_or_default();
-    let counts = (row.stokes_updates, row.stokes_iterations);
-    assert_eq!(counts, (flow.n_updates, flow.n_boundary_solves));
-    assert_eq!(flow.n_updates > 0, case.flow.is_some());
-    assert!(row.warnings.is_empty(), "{}", row.warnings);
 }
 
 #[test]

@@ -3,9 +3,10 @@
 use std::f64::consts::PI;
 
 use topo_core::Interrupt;
+use topo_nematic::tensor::uniaxial;
 use topo_nematic::{
     Discharge, DischargeSettings, FlowParameters, Material, NematicAccuracy, NematicBattery,
-    NematicParameters, NematicState, RunHooks, SwitchSettings, SwitchTarget, uniaxial,
+    NematicParameters, NematicState, RunHooks, SwitchSettings, SwitchTarget,
 };
 
 /// A small tilt of a uniform director that decays by itself.

@@ -2,10 +2,11 @@
 
 use topo_analysis::DischargeTimes;
 use topo_core::Interrupt;
+use topo_nematic::record::FinalSource;
 use topo_nematic::{
     Anchoring, ChargeSettings, ChargedNematic, Discharge, DischargeSettings, EnergyParts,
-    ExternalField, FinalSource, FlowParameters, Material, NematicAccuracy, NematicBattery,
-    NematicParameters, RunHooks, SurfacePattern, SwitchSettings, SwitchTarget,
+    ExternalField, FlowParameters, Material, NematicAccuracy, NematicBattery, NematicParameters,
+    RunHooks, SurfacePattern, SwitchSettings, SwitchTarget,
 };
 
 fn small(charge: i32) -> NematicParameters {

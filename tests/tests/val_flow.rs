@@ -2,10 +2,9 @@
 
 use std::f64::consts::{PI, TAU};
 
-use topo_nematic::{
-    Drive, Faces, FlowCoupling, FlowParameters, FlowSolver, Grid, MacField, Material, Particle,
-    Sparse, SparseOptions, Spectral, StokesSolver,
-};
+use topo_nematic::flow::{FlowCoupling, FlowSolver};
+use topo_nematic::stokes::{Drive, MacField, Sparse, SparseOptions, Spectral, StokesSolver};
+use topo_nematic::{Faces, FlowParameters, Grid, Material, Particle};
 
 const P: Faces = Faces::Periodic;
 const W: Faces = Faces::Wall;

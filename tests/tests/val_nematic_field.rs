@@ -3,11 +3,13 @@
 use std::f64::consts::PI;
 
 use topo_core::Interrupt;
+use topo_nematic::anchoring::{Plate, PlateDirector};
+use topo_nematic::defects::defect_lines;
+use topo_nematic::tensor::{Tensor5, contract, uniaxial};
 use topo_nematic::{
     Anchoring, ChargeSettings, ChargedNematic, Discharge, DischargeSettings, Material,
-    NematicAccuracy, NematicBattery, NematicParameters, NematicState, Plate, PlateDirector,
-    RunHooks, Sides, SurfacePattern, SwitchSettings, SwitchTarget, Tensor5, contract, defect_lines,
-    uniaxial,
+    NematicAccuracy, NematicBattery, NematicParameters, NematicState, RunHooks, Sides,
+    SurfacePattern, SwitchSettings, SwitchTarget,
 };
 
 /// A cell without a particle, lengths in xi_N.

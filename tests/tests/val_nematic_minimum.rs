@@ -3,10 +3,12 @@
 use std::f64::consts::PI;
 
 use topo_core::Interrupt;
+use topo_core::Progress;
+use topo_nematic::anchoring::Plate;
+use topo_nematic::record::{ChargeStop, MinimumReport, MinimumState};
 use topo_nematic::{
-    ChargeSettings, ChargeStop, ChargedNematic, ExternalField, MinimumReport, MinimumState,
-    NematicAccuracy, NematicBattery, NematicParameters, Plate, Progress, RunHooks, Sides,
-    SurfacePattern, Threads,
+    ChargeSettings, ChargedNematic, ExternalField, NematicAccuracy, NematicBattery,
+    NematicParameters, RunHooks, Sides, SurfacePattern, Threads,
 };
 use topo_tests::threads::on_threads;
 

@@ -13,7 +13,7 @@ use topo_rod::contact::ContactPairs;
 use topo_rod::energy::{At, EnergyKind, EnergyTerm, Force, Stiffness, gradient_error};
 use topo_rod::{
     Accuracy, ChargeSettings, CutSite, DischargeSettings, EndCondition, Ends, Guards, RodBattery,
-    RodError, RodParameters, cut_circle_energy,
+    RodError, RodParameters, RodSample, cut_circle_energy,
 };
 use topo_tests::curves::{line, ring, trefoil};
 use topo_tests::run::{Setup, rod, run_to, stored};
@@ -358,6 +358,65 @@ fn names_that_cannot_stand_in_a_table_are_refused() {
     let trap = |_: &_| -> Box<dyn EnergyTerm> { Box::new(Trap::of(1.0)) };
     let once = circle(40, 20.0, 1e-3).with(trap).unwrap();
     assert!(once.with(trap).unwrap_err().to_string().contains("trap"));
+}
+
+/// A quantity that no table has: the radius of gyration, L/2π of a circle and L/√12 of a straight rod, is a column of every table, in each
+/// row that of its shape; its name may be no column's, and cases without it are not gone on with.
+#[test]
+fn law_an_observable_from_outside_is_found_in_every_table() {
+    let folder = tempfile::tempdir().unwrap();
+    let (table, settings) = (KnotTable::builtin(), SweepSettings::new(folder.path()));
+    let gyration = |sample: &RodSample| {
+        let state = &sample.state;
+        let n = state.n_vertices();
+        let share = |i: usize| {
+            if state.interior().contains(&i) {
+                1.0
+            } else {
+                0.5
+            }
+        };
+        let total: f64 = (0..n).map(share).sum();
+        let mean = |f: &dyn Fn(usize) -> Vector3<f64>| {
+            (0..n).map(|i| f(i) * share(i)).sum::<Vector3<f64>>() / total
+        };
+        let x = state.vertices();
+        let centre = mean(&|i| x[i]);
+        let square = mean(&|i| Vector3::repeat((x[i] - centre).norm_squared()));
+        square.x.sqrt()
+    };
+    let text = SCENE.replace("0.7", "0.9999");
+    let plain = ElasticScene::parse(&text, Path::new("circle.toml")).unwrap();
+    let run = |scene: &ElasticScene| run_sweep(scene, &table, &settings, &|_| {}).unwrap();
+    assert_eq!(run(&plain).n_computed, 1);
+    let scene = plain.clone().with_observable("gyration", gyration).unwrap();
+    let report = run(&scene);
+    assert_eq!((report.n_computed, report.failed.len()), (1, 0));
+    let results = scene.results(folder.path());
+    let case = results.join(&report.rows[0].case);
+    let read = |path: &Path| Columns::read(path).of("gyration");
+    let (circle, straight) = (50.0 / TAU, 50.0 / 12.0_f64.sqrt());
+    let near = |found: f64, exact: f64| (found / exact - 1.0).abs() < 2e-3;
+    let charge = read(&case.join("charge.csv"));
+    assert!(
+        charge.len() > 3 && charge.iter().all(|r| near(*r, circle)),
+        "{charge:?}"
+    );
+    assert!(near(read(&results.join("sweep.csv"))[0], circle));
+    let series = read(&case.join("series.csv"));
+    assert!(near(series[0], circle), "{series:?}");
+    assert!(near(series[series.len() - 1], straight), "{series:?}");
+    assert!(
+        series
+            .windows(2)
+            .all(|pair| pair[0] <= pair[1] * (1.0 + 1e-9))
+    );
+    assert_eq!((run(&scene).n_computed, run(&scene).n_reused), (0, 1));
+    for name in ["writhe", "t99", "cut", "", "Radius", "two words"] {
+        let refused = plain.clone().with_observable(name, gyration).unwrap_err();
+        assert!(refused.to_string().contains("observable"), "{refused}");
+    }
+    assert!(scene.with_observable("gyration", gyration).is_err());
 }
 
 const SCENE: &str = "[rod]\nknot = \"0_1\"\n[charge]\nduration = 0.1\n[discharge]\nuntil_released = 0.7\nclosures = 0\n[accuracy]\nedges = 60\ntolerance = 1e-3\n";

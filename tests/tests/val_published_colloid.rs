@@ -7,11 +7,13 @@ use std::path::Path;
 use topo_analysis::{DischargeTimes, NEMATIC_SHARES, NematicRow};
 use topo_core::Interrupt;
 use topo_lab::{NematicScene, Preset};
+use topo_nematic::anchoring::{Plate, PlateDirector};
+use topo_nematic::flow::{FlowCoupling, FlowSolver};
+use topo_nematic::stokes::Drive;
 use topo_nematic::{
-    Anchoring, Boundary, ChargeSettings, DischargeSettings, Drive, EnergyParts, FlowCoupling,
-    FlowParameters, FlowSolver, FreeSurface, Material, NematicAccuracy, NematicBattery,
-    NematicParameters, Plate, PlateDirector, Precision, RunHooks, Sides, SurfacePattern,
-    SwitchSettings, SwitchTarget,
+    Anchoring, Boundary, ChargeSettings, DischargeSettings, EnergyParts, FlowParameters,
+    FreeSurface, Material, NematicAccuracy, NematicBattery, NematicParameters, Precision, RunHooks,
+    Sides, SurfacePattern, SwitchSettings, SwitchTarget,
 };
 
 #[test]
@@ -123,8 +125,12 @@ fn val_published_method_and_our_settings_of_it() {
     assert_eq!(accuracy.tolerance, 3e-5);
     assert_eq!(accuracy.precision, Precision::Double);
     assert_eq!((accuracy.max_steps, accuracy.memory_limit), (100_000, None));
+    check_charge(&battery);
+    check_release();
+}
 
-    // A tilt of 0.05 cos(pi z/L_z) along x, to rms H < 1e-8 and an order parameter at rest.
+/// A tilt of 0.05 cos(pi z/L_z) along x, to rms H < 1e-8 and an order parameter at rest.
+fn check_charge(battery: &NematicBattery) {
     let charge = ChargeSettings::default();
     assert_eq!((charge.seeds, charge.seed_azimuth), (vec![0.05], 0.0));
     assert_eq!((charge.tolerance, charge.order_tolerance), (1e-8, 1e-6));
@@ -139,7 +145,9 @@ fn val_published_method_and_our_settings_of_it() {
         assert!((at[2] - exact).abs() < 1e-6, "{k}: {} {exact}", at[2]);
         assert_eq!(at[4], 0.0);
     }
+}
 
+fn check_release() {
     // "switching off the anchoring [...] allowing the director field to take any orientation".
     let free = SwitchTarget::Free(FreeSurface::CutCell);
     assert_eq!(

@@ -3,10 +3,12 @@
 use std::f64::consts::PI;
 
 use topo_core::Interrupt;
+use topo_nematic::anchoring::{Plate, PlateDirector};
+use topo_nematic::tensor::uniaxial;
 use topo_nematic::{
     Anchoring, Boundary, ChargedNematic, DischargeSettings, FreeSurface, Material, NematicAccuracy,
-    NematicBattery, NematicParameters, NematicState, Plate, PlateDirector, RunHooks,
-    SurfacePattern, SwitchSettings, SwitchTarget, uniaxial,
+    NematicBattery, NematicParameters, NematicState, RunHooks, SurfacePattern, SwitchSettings,
+    SwitchTarget,
 };
 
 /// |Q - Q'|² of two directors at right angles, order S: (9/4) S² |nn - mm|² = (9/2) S², at the published S_eq.

@@ -32,6 +32,7 @@ impl Command {
             Self::Fuzz(_) => "fuzz",
             Self::Test(_) => "test",
             Self::Ci => "ci",
+            Self::Docs => "docs",
             Self::Bench(_) => "bench",
         }
     }
@@ -104,6 +105,8 @@ pub enum Command {
     Test(TestArgs),
     /// Everything that must pass before a change lands: fmt, clippy, docs, packages, tests.
     Ci,
+    /// Build the site of the documentation into target/site: tutorial, pages, Python API, with search.
+    Docs,
     /// Run the benchmarks and print a table.
     #[command(after_help = "Examples:
   cargo xtask bench

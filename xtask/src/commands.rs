@@ -7,6 +7,7 @@ mod dependencies;
 mod determinism;
 mod fuzz;
 mod packages;
+mod python;
 mod record;
 mod test;
 mod tradeoff;
@@ -38,6 +39,7 @@ pub fn dispatch(cli: Cli) -> Result<ExitCode, CliError> {
         Command::Fuzz(args) => fuzz::run(&args),
         Command::Test(args) => test::run(&args),
         Command::Ci => ci::run(),
+        Command::Docs => python::docs(&cargo::target()),
         Command::Bench(args) => bench::run(&args),
     }
     .map(|()| ExitCode::SUCCESS)

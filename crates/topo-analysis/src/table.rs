@@ -66,6 +66,17 @@ pub fn table_bytes<T: Serialize>(path: &Path, rows: &[T]) -> Result<Vec<u8>, Ana
     expanded(table).map_err(wrong)
 }
 
+/// Names of the columns in which a row stands.
+///
+/// # Errors
+/// A row that cannot stand in a table.
+pub fn columns<T: Serialize>(row: &T) -> Result<Vec<String>, AnalysisError> {
+    let table = table_bytes(Path::new("a row"), std::slice::from_ref(row))?;
+    let header = table.split(|byte| *byte == b'\n').next().unwrap_or(&[]);
+    let header = String::from_utf8_lossy(header);
+    Ok(header.split(',').map(str::to_owned).collect())
+}
+
 /// Reads rows of a CSV with a header; columns that the rows do not have are left out.
 ///
 /// # Errors

@@ -1,7 +1,7 @@
 //! Knot types while a cut rod is open, and when it is untied.
 
-use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
+use topo_core::Vector3;
 use topo_knots::{KnotTable, identify_open};
 
 use crate::AnalysisError;

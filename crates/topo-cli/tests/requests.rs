@@ -141,70 +141,28 @@ fn single_rods() -> Vec<Named> {
 }
 
 fn colloids() -> Vec<Named> {
+    let of = |radius: &str, keys: &str, tables: &str| {
+        colloid(
+            &format!("radius = {radius}\nspacing = 1.25\n{keys}"),
+            tables,
+        )
+    };
+    let planar = "pattern = { planar = { axis = [0.0, 0.0, 1.0] } }";
+    let field = "particle = false\nfield = { vector = [0.0, 0.0, 1.0], anisotropy = 0.01 }";
+    let viscosities = "[material]\nviscosity = [1.0, 1.38]\n[flow]";
+    let weak = "q = 1\nanchoring = { weak = 1.0 }";
+    let radii = "q = 1\nboundary = \"node-mask\"";
+    let cell = "q = 1\ncell = [4.0, 4.0, 3.0]";
     vec![
-        (
-            "charges",
-            colloid("radius = 5\nspacing = 1.25\nq = [1, 2]", "[flow]\nq = 2"),
-            3,
-        ),
-        (
-            "homeotropic",
-            colloid("radius = 5\nspacing = 1.25\npattern = \"homeotropic\"", ""),
-            1,
-        ),
-        (
-            "planar",
-            colloid(
-                "radius = 5\nspacing = 1.25\npattern = { planar = { axis = [0.0, 0.0, 1.0] } }",
-                "",
-            ),
-            1,
-        ),
-        (
-            "anchoring",
-            colloid(
-                "radius = 5\nspacing = 1.25\nq = 1\nanchoring = { weak = 1.0 }",
-                "",
-            ),
-            1,
-        ),
-        (
-            "no-particle",
-            colloid(
-                "radius = 5\nspacing = 1.25\nparticle = false\nfield = { vector = [0.0, 0.0, 1.0], anisotropy = 0.01 }",
-                "[switch]\nto = \"keep\"",
-            ),
-            1,
-        ),
-        (
-            "viscosities",
-            colloid(
-                "radius = 5\nspacing = 1.25\nq = 1",
-                "[material]\nviscosity = [1.0, 1.38]\n[flow]",
-            ),
-            2,
-        ),
-        (
-            "radii",
-            colloid(
-                "radius = [4, 5]\nspacing = 1.25\nq = 1\nboundary = \"node-mask\"",
-                "",
-            ),
-            2,
-        ),
-        (
-            "ramp",
-            colloid("radius = 5\nspacing = 1.25\nq = 2", "[switch]\nramp = 1.0"),
-            1,
-        ),
-        (
-            "cell",
-            colloid(
-                "radius = 5\nspacing = 1.25\nq = 1\ncell = [4.0, 4.0, 3.0]",
-                "",
-            ),
-            1,
-        ),
+        ("charges", of("5", "q = [1, 2]", "[flow]\nq = 2"), 3),
+        ("homeotropic", of("5", "pattern = \"homeotropic\"", ""), 1),
+        ("planar", of("5", planar, ""), 1),
+        ("anchoring", of("5", weak, ""), 1),
+        ("no-particle", of("5", field, "[switch]\nto = \"keep\""), 1),
+        ("viscosities", of("5", "q = 1", viscosities), 2),
+        ("radii", of("[4, 5]", radii, ""), 2),
+        ("ramp", of("5", "q = 2", "[switch]\nramp = 1.0"), 1),
+        ("cell", of("5", cell, ""), 1),
     ]
 }
 
@@ -253,6 +211,27 @@ fn merge(from: &Path, to: &Path) {
     }
 }
 
+/// Starts a command and kills it after a while, of two seconds at most.
+fn kill(mut command: Command, after: Duration) {
+    let mut child = command.spawn().unwrap();
+    std::thread::sleep(after.min(Duration::from_secs(2)));
+    let _ = child.kill();
+    let _ = child.wait();
+}
+
+/// Every row has the folder of its case, which no other case has.
+fn check_folders(name: &str, folder: &Path, rows: &[BTreeMap<String, String>]) {
+    let mut folders: Vec<&String> = rows.iter().map(|row| &row["case"]).collect();
+    folders.dedup();
+    let n_cases = folders.len();
+    folders.sort();
+    folders.dedup();
+    assert_eq!(folders.len(), n_cases, "{name}: cases share a folder");
+    assert_eq!(cases(folder).len(), n_cases, "{name}");
+    let is_finished = |case: &&String| folder.join(case).join("run.json").exists();
+    assert!(folders.iter().all(is_finished));
+}
+
 /// Runs scenes `which`; every way to run one gives the same table, and no two cases share a folder.
 fn all_ways_agree(which: &[&str]) {
     let dir = tempfile::tempdir().unwrap();
@@ -289,27 +268,11 @@ fn all_ways_agree(which: &[&str]) {
         }
         done(&run(&scene, &merged, &[]).output().unwrap());
         assert_eq!(table(&merged.join(name)), first, "{name}: in parts");
-        // killed, and gone on with
         let torn = dir.path().join("torn");
-        let mut child = run(&scene, &torn, &[]).spawn().unwrap();
-        std::thread::sleep(Duration::min(whole.mul_f64(0.6), Duration::from_secs(2)));
-        let _ = child.kill();
-        let _ = child.wait();
+        kill(run(&scene, &torn, &[]), whole.mul_f64(0.6));
         done(&run(&scene, &torn, &[]).output().unwrap());
         assert_eq!(table(&torn.join(name)), first, "{name}: killed");
-        // every row has the folder of its case, which no other case has
-        let mut folders: Vec<&String> = first.iter().map(|row| &row["case"]).collect();
-        folders.dedup();
-        let n_cases = folders.len();
-        folders.sort();
-        folders.dedup();
-        assert_eq!(folders.len(), n_cases, "{name}: cases share a folder");
-        assert_eq!(cases(&folder).len(), n_cases, "{name}");
-        assert!(
-            folders
-                .iter()
-                .all(|case| folder.join(case).join("run.json").exists())
-        );
+        check_folders(name, &folder, &first);
         // the scene beside the table is the scene
         let own = dir.path().join("own").join(format!("{name}.toml"));
         std::fs::create_dir_all(own.parent().unwrap()).unwrap();

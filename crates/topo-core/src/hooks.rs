@@ -10,7 +10,7 @@ use serde::de::DeserializeOwned;
 
 use crate::checkpoint::{checkpoint_bytes, load_checkpoint};
 use crate::file::{FileError, write_atomic_bytes};
-use crate::simulation::Interrupt;
+use crate::stop::Interrupt;
 
 pub use progress::{Phase, Progress};
 
@@ -86,6 +86,13 @@ impl<'a, F: ?Sized> RunHooks<'a, F> {
     /// Names the checkpoint file of the next phase.
     pub fn keep_in(&mut self, path: &Path) {
         self.checkpoint = Some(path.to_owned());
+    }
+
+    /// Names the checkpoint file of a further phase: that of the first, with `phase` as its last extension.
+    pub fn begin_phase(&mut self, phase: &str) {
+        if let Some(path) = &mut self.checkpoint {
+            path.as_mut_os_string().push(format!(".{phase}"));
+        }
     }
 
     /// The token that asks the run to stop.

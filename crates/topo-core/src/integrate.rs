@@ -6,7 +6,7 @@ mod rosenbrock;
 #[cfg(test)]
 pub(crate) mod testing;
 
-pub use fire::{Fire, ForceFn, Relaxation, RelaxationEnd, Relaxed};
+pub use fire::{Fire, FireStep, FireSums};
 pub use rkc2::{Rkc2, Rkc2Stage, Rkc2Stages};
 pub use rosenbrock::{GAMMA_L_STABLE_LARGE, GAMMA_L_STABLE_SMALL, RosenbrockW};
 

@@ -1,12 +1,15 @@
 //! Shared ground of the topological batteries: units, curve geometry, integrators, step control, ledger, observers, checkpoints.
 //!
-//! Reading order: `curve` (what is deformed), `integrate` (what a model offers and how it is advanced), `control` and
+//! Reading order: `curve` (what is deformed), `integrate` (what a model offers and how it is advanced), `control`, `stepping` and
 //! `simulation` (the loop that ends for certain), `ledger` and `observe` (what is known of a run), `hooks` (what a caller hangs into
 //! it), `discharge` and `phase` (what a battery yields), `file`, `checkpoint` and `snapshot` (what stays on disk), `check` (validators,
 //! and the finite differences that every energy is tested with).
 //!
 //! Everything here is free of units, but for `units`: a rod's radius, bending modulus and viscosity are 1, and SI values enter and
-//! leave through [`RodUnits`].
+//! leave through [`RodUnits`]. Points are nalgebra's vectors, re-exported as [`Vector3`]: a caller needs no nalgebra of the same version.
+
+/// The vectors that everything here takes and gives.
+pub use nalgebra;
 
 mod check;
 mod checkpoint;
@@ -24,6 +27,8 @@ mod observe;
 mod phase;
 mod simulation;
 mod snapshot;
+mod stepping;
+mod stop;
 mod units;
 
 pub use check::{
@@ -43,16 +48,19 @@ pub use error::CurveError;
 pub use file::{FileError, write_atomic, write_atomic_bytes};
 pub use hooks::{MOST_COUNTED, Phase, Progress, RunHooks};
 pub use integrate::{
-    Counters, Fire, ForceFn, GAMMA_L_STABLE_LARGE, GAMMA_L_STABLE_SMALL, LinearlyImplicit, Model,
-    Relaxation, RelaxationEnd, Relaxed, Rkc2, Rkc2Stage, Rkc2Stages, RosenbrockW, SpectralBound,
-    Stepper, StepperMemory, Trial, max_norm,
+    Counters, Fire, FireStep, FireSums, GAMMA_L_STABLE_LARGE, GAMMA_L_STABLE_SMALL,
+    LinearlyImplicit, Model, Rkc2, Rkc2Stage, Rkc2Stages, RosenbrockW, SpectralBound, Stepper,
+    StepperMemory, Trial, max_norm,
 };
 pub use ledger::{CompensatedSum, EnergyEvent, Ledger};
 pub use minimum::MinimumState;
+pub use nalgebra::Vector3;
 pub use observe::{Observer, Sample, Schedule, Scheduled};
 pub use phase::{PhaseExtension, PhaseReport, RunRecord};
-pub use simulation::{Interrupt, Simulation, SimulationMemory, StopCondition, StopReason};
+pub use simulation::{Simulation, SimulationMemory, StopCondition};
 pub use snapshot::Snapshot;
+pub use stepping::{Advance, TimeStepping};
+pub use stop::{Interrupt, StopReason};
 pub use units::{
     RodMaterial, RodUnits, SILICONE, bending_time, energy_over_reference, reference_energy,
     reference_time, twist_time,

@@ -7,7 +7,7 @@ use crate::control::RejectionCounts;
 use crate::discharge::DischargeCurve;
 use crate::integrate::Counters;
 use crate::ledger::Ledger;
-use crate::simulation::StopReason;
+use crate::stop::StopReason;
 
 /// What only one battery has to say of a phase, and where its keys stand among those that all have.
 ///

@@ -2,93 +2,14 @@
 
 mod memory;
 
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
-
-use serde::Serialize;
-
 use crate::control::{Rejection, RejectionCounts, StepControl};
 use crate::integrate::{Counters, Model, Stepper};
 use crate::ledger::Ledger;
 use crate::observe::{Sample, Scheduled};
+use crate::stepping::{Advance, TimeStepping};
+use crate::stop::{Interrupt, StopReason};
 
 pub use memory::SimulationMemory;
-
-/// Why a run ended: a value, not an error, since a run that stops early is still a run.
-#[derive(Clone, Debug, PartialEq, Serialize, thiserror::Error)]
-#[serde(rename_all = "kebab-case")]
-#[non_exhaustive]
-pub enum StopReason {
-    /// The requested time was reached.
-    #[error("reached the requested time")]
-    ReachedTime,
-    /// The caller's condition was met.
-    #[error("condition met: {0}")]
-    Condition(String),
-    /// The step would have to be shorter than allowed.
-    #[error("step {dt:.3e} is too small to go on; last refusal: {last}")]
-    StepTooSmall {
-        /// Length of the last step tried.
-        dt: f64,
-        /// Why it was refused.
-        last: Rejection,
-    },
-    /// The limit of trial steps was reached.
-    #[error("limit of {n} trial steps reached")]
-    StepLimit {
-        /// The limit.
-        n: u64,
-    },
-    /// An interrupt was requested.
-    #[error("interrupted")]
-    Interrupted,
-    /// The run is broken and no smaller step helps.
-    #[error("failed: {why}")]
-    Failed {
-        /// What is broken.
-        why: Rejection,
-    },
-}
-
-impl StopReason {
-    /// Short name, for reports.
-    pub fn name(&self) -> &'static str {
-        match self {
-            Self::ReachedTime => "reached-time",
-            Self::Condition(_) => "condition",
-            Self::StepTooSmall { .. } => "step-too-small",
-            Self::StepLimit { .. } => "step-limit",
-            Self::Interrupted => "interrupted",
-            Self::Failed { .. } => "failed",
-        }
-    }
-
-    /// Whether the run ended as asked: at its time or by its condition.
-    pub fn is_success(&self) -> bool {
-        matches!(self, Self::ReachedTime | Self::Condition(_))
-    }
-}
-
-/// A token by which another thread (or a signal handler) asks runs to stop after their present step.
-#[derive(Clone, Debug, Default)]
-pub struct Interrupt(Arc<AtomicBool>);
-
-impl Interrupt {
-    /// A token that nobody has used yet.
-    pub fn new() -> Self {
-        Self::default()
-    }
-
-    /// Asks all holders of this token to stop.
-    pub fn request(&self) {
-        self.0.store(true, Ordering::Relaxed);
-    }
-
-    /// Whether someone asked.
-    pub fn is_requested(&self) -> bool {
-        self.0.load(Ordering::Relaxed)
-    }
-}
 
 /// A condition that ends a run: gives the reason when met.
 pub type StopCondition<'a, S> = dyn FnMut(&Sample<'_, S>) -> Option<String> + 'a;
@@ -105,15 +26,45 @@ pub struct Simulation<M: Model, S> {
     state: M::State,
     candidate: M::State,
     stepper: S,
-    control: StepControl,
+    steps: TimeStepping,
     interrupt: Interrupt,
-    time: f64,
-    last_dt: f64,
-    n_steps: u64,
-    /// Trial steps of the present run.
-    n_trials: u64,
-    rejections: RejectionCounts,
     no_ledger: Ledger,
+}
+
+/// What a simulation advances.
+struct System<'a, M: Model, S> {
+    model: &'a mut M,
+    state: &'a mut M::State,
+    candidate: &'a mut M::State,
+    stepper: &'a mut S,
+}
+
+impl<M: Model, S: Stepper<M>> Advance for System<'_, M, S> {
+    fn longest_step(&mut self) -> Result<f64, Rejection> {
+        let longest = self.stepper.longest_step(self.model, self.state)?;
+        Ok(longest.min(self.model.longest_step()))
+    }
+
+    fn try_step(&mut self, _: f64, dt: f64, control: &StepControl) -> Result<f64, Rejection> {
+        let trial = self
+            .stepper
+            .step(self.model, self.state, dt, self.candidate)?;
+        control.judge(trial.error)?;
+        let step = self.stepper.displacement();
+        self.model.check(self.state, self.candidate, step, dt)?;
+        Ok(trial.error)
+    }
+
+    fn accept(&mut self, dt: f64) {
+        let step = self.stepper.displacement();
+        self.model.accepted(self.state, self.candidate, step, dt);
+        self.stepper.accepted();
+        std::mem::swap(self.state, self.candidate);
+    }
+
+    fn error_order(&self) -> u32 {
+        self.stepper.error_order()
+    }
 }
 
 impl<M: Model, S: Stepper<M>> Simulation<M, S> {
@@ -125,13 +76,8 @@ impl<M: Model, S: Stepper<M>> Simulation<M, S> {
             state,
             candidate,
             stepper,
-            control,
+            steps: TimeStepping::new(control),
             interrupt: Interrupt::new(),
-            time: 0.0,
-            last_dt: 0.0,
-            n_steps: 0,
-            n_trials: 0,
-            rejections: RejectionCounts::default(),
             no_ledger: Ledger::default(),
         }
     }
@@ -151,7 +97,7 @@ impl<M: Model, S: Stepper<M>> Simulation<M, S> {
         observers: &mut [Scheduled<'_, M::State>],
         stop: &mut StopCondition<'_, M::State>,
     ) -> StopReason {
-        self.n_trials = 0;
+        self.steps.restart_trials();
         loop {
             if let Some(reason) = self.advance(until, observers, stop) {
                 return reason;
@@ -177,7 +123,7 @@ impl<M: Model, S: Stepper<M>> Simulation<M, S> {
             return Some(StopReason::Condition(reason));
         }
         // A NaN ends the run as well.
-        let before_the_end = self.time < until;
+        let before_the_end = self.time() < until;
         if !before_the_end {
             return Some(StopReason::ReachedTime);
         }
@@ -185,98 +131,27 @@ impl<M: Model, S: Stepper<M>> Simulation<M, S> {
             return Some(StopReason::Interrupted);
         }
         let exact = observers.iter().filter_map(|o| o.schedule().next_exact());
-        let target = exact.filter(|t| *t > self.time).fold(until, f64::min);
-        self.step_towards(target)
+        let target = exact.filter(|t| *t > self.time()).fold(until, f64::min);
+        self.step_towards(target).err()
     }
 
-    /// Makes one accepted step that does not pass `target`, or says why it cannot.
-    fn step_towards(&mut self, target: f64) -> Option<StopReason> {
-        let longest = match self.stepper.longest_step(&mut self.model, &self.state) {
-            Ok(dt) => dt,
-            Err(why) => return Some(StopReason::Failed { why }),
+    /// Makes one accepted step that does not pass `target`.
+    fn step_towards(&mut self, target: f64) -> Result<(), StopReason> {
+        let mut system = System {
+            model: &mut self.model,
+            state: &mut self.state,
+            candidate: &mut self.candidate,
+            stepper: &mut self.stepper,
         };
-        let mut dt = self
-            .control
-            .dt()
-            .min(longest)
-            .min(self.model.longest_step());
-        loop {
-            if self.n_trials >= self.control.max_trials() {
-                return Some(StopReason::StepLimit { n: self.n_trials });
-            }
-            self.n_trials += 1;
-            let remaining = target - self.time;
-            // Two equal steps at the end are better than a long one and a sliver.
-            let lands = dt >= remaining * (1.0 - 1e-9);
-            let trial_dt = if lands {
-                remaining
-            } else {
-                dt.min(0.5 * remaining)
-            };
-            let time = if lands { target } else { self.time + trial_dt };
-            let why = match self.try_step(trial_dt) {
-                Ok(_) if time <= self.time => Rejection::Domain {
-                    what: "the step is lost in the rounding of the time",
-                },
-                Ok(error) => {
-                    self.accept(time, trial_dt, error);
-                    return None;
-                }
-                Err(why) => why,
-            };
-            self.rejections.add(&why);
-            if matches!(why, Rejection::Fatal { .. }) {
-                return Some(StopReason::Failed { why });
-            }
-            let error_order = self.stepper.error_order();
-            match self.control.reject(trial_dt, &why, error_order) {
-                Some(shorter) => dt = shorter,
-                None => {
-                    return Some(StopReason::StepTooSmall {
-                        dt: trial_dt,
-                        last: why,
-                    });
-                }
-            }
-        }
-    }
-
-    /// Tries one step and asks all guards.
-    fn try_step(&mut self, dt: f64) -> Result<f64, Rejection> {
-        let trial = self
-            .stepper
-            .step(&mut self.model, &self.state, dt, &mut self.candidate)?;
-        self.control.judge(trial.error)?;
-        self.model.check(
-            &self.state,
-            &self.candidate,
-            self.stepper.displacement(),
-            dt,
-        )?;
-        Ok(trial.error)
-    }
-
-    fn accept(&mut self, time: f64, dt: f64, error: f64) {
-        self.model.accepted(
-            &self.state,
-            &self.candidate,
-            self.stepper.displacement(),
-            dt,
-        );
-        self.stepper.accepted();
-        std::mem::swap(&mut self.state, &mut self.candidate);
-        self.control.accept(dt, error, self.stepper.error_order());
-        self.time = time;
-        self.last_dt = dt;
-        self.n_steps += 1;
+        self.steps.step_towards(target, &mut system)
     }
 
     /// What observers would see now.
     pub fn sample(&self) -> Sample<'_, M::State> {
         Sample {
-            time: self.time,
-            step: self.n_steps,
-            dt: self.last_dt,
+            time: self.steps.time(),
+            step: self.steps.n_steps(),
+            dt: self.steps.last_dt(),
             state: &self.state,
             ledger: self.model.ledger().unwrap_or(&self.no_ledger),
         }
@@ -297,33 +172,33 @@ impl<M: Model, S: Stepper<M>> Simulation<M, S> {
         let result = change(&mut self.model, &mut self.state);
         self.candidate = self.state.clone();
         self.stepper.reset();
-        self.n_trials = 0;
+        self.steps.restart_trials();
         result
     }
 
     /// Step control.
     pub fn control(&self) -> &StepControl {
-        &self.control
+        self.steps.control()
     }
 
     /// Step control, to be changed between runs.
     pub fn control_mut(&mut self) -> &mut StepControl {
-        &mut self.control
+        self.steps.control_mut()
     }
 
     /// Time reached.
     pub fn time(&self) -> f64 {
-        self.time
+        self.steps.time()
     }
 
     /// Accepted steps so far.
     pub fn n_steps(&self) -> u64 {
-        self.n_steps
+        self.steps.n_steps()
     }
 
     /// Refused steps so far, by name.
     pub fn rejections(&self) -> &RejectionCounts {
-        &self.rejections
+        self.steps.rejections()
     }
 
     /// Work done by the integrator so far.

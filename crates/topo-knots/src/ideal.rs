@@ -18,7 +18,7 @@ const SCHEMA: &str = "tight-knot/1";
 /// truncated or corrupt is computed again and replaced. A mirror image is made from the file of the knot itself.
 ///
 /// # Errors
-/// As [`tighten_entry`], and [`KnotError::File`] if the result cannot be written.
+/// As [`tighten_entry`](crate::tighten_entry), and [`KnotError::File`] if the result cannot be written.
 ///
 /// # Validation
 /// `a_corrupt_cache_is_replaced`

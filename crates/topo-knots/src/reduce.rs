@@ -177,30 +177,29 @@ impl Reducer {
                 && edge != before
                 && is_pierced(corners, &x[edge], &x[next[edge] as usize])
         });
-        if hit {
-            return false;
-        }
-        if rays.is_empty() {
-            return true;
-        }
-        let [a, b, c] = corners;
-        let centre = (a + b + c) / 3.0;
-        let reach = (a - centre)
-            .norm_squared()
-            .max((b - centre).norm_squared())
-            .max((c - centre).norm_squared());
-        !rays.iter().any(|ray| {
-            let to = centre - ray.from;
-            let along = to.dot(&ray.direction);
-            let ahead = along.max(0.0);
-            // A first comparison; the second margin is for the rounding of a difference of large numbers.
-            to.norm_squared() - ahead * (2.0 * along - ahead)
-                <= reach * (1.0 + 1e-9) + 1e-13 * to.norm_squared()
-                && ray.from != *a
-                && ray.from != *c
-                && is_pierced(corners, &ray.from, &ray.to)
-        })
+        !hit && (rays.is_empty() || !is_pierced_by_any(corners, rays))
     }
+}
+
+/// Whether a ray that does not start at the first or the last of the corners pierces their triangle.
+fn is_pierced_by_any(corners: [&V; 3], rays: &[Ray]) -> bool {
+    let [a, b, c] = corners;
+    let centre = (a + b + c) / 3.0;
+    let reach = (a - centre)
+        .norm_squared()
+        .max((b - centre).norm_squared())
+        .max((c - centre).norm_squared());
+    rays.iter().any(|ray| {
+        let to = centre - ray.from;
+        let along = to.dot(&ray.direction);
+        let ahead = along.max(0.0);
+        // A first comparison; the second margin is for the rounding of a difference of large numbers.
+        to.norm_squared() - ahead * (2.0 * along - ahead)
+            <= reach * (1.0 + 1e-9) + 1e-13 * to.norm_squared()
+            && ray.from != *a
+            && ray.from != *c
+            && is_pierced(corners, &ray.from, &ray.to)
+    })
 }
 
 /// A closed curve of the same type with as few vertices as removing them one by one leaves.

@@ -91,6 +91,14 @@ pub enum LabError {
     /// A knot is unknown, or its shape cannot be had.
     #[error(transparent)]
     Knot(#[from] topo_knots::KnotError),
+    /// A quantity of the caller's own cannot be a column.
+    #[error("observable {name}: {reason}")]
+    Observable {
+        /// Its name.
+        name: String,
+        /// Why, or what would be right.
+        reason: String,
+    },
     /// A knot has no start shape.
     #[error("{knot} has no tight shape: {reason}")]
     Shape {

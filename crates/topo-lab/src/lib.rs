@@ -29,7 +29,7 @@ pub use battery::{Battery, Checked, Options, Scene, Stage, Sweep, Swept, parse_s
 pub use cost::{Cost, Estimate, Probe};
 pub use elastic::{
     ACCURACY_CASES, AccuracyRow, Cuts, Elastic, ElasticCase, ElasticReport, ElasticScene, NEAR_TIE,
-    Names, OwnKnots, OwnTerm, Purpose, RESULTS_VERSION, Rods, ShapeFrame, Variant,
+    Names, Observable, OwnKnots, OwnTerm, Purpose, RESULTS_VERSION, Rods, ShapeFrame, Variant,
     discharge_frames, estimate_sweep, measure_accuracy, perturbed, reference_scene, run_sweep,
 };
 pub use error::LabError;

@@ -126,14 +126,9 @@ pub(crate) fn run<E: Experiment>(
         now.sort_by_key(|(k, _)| *k);
         Ok((now, clock.seconds()))
     })??;
-    let n_computed = now
-        .iter()
-        .filter(|(_, n)| matches!(n, Now::Done(_)))
-        .count();
-    let n_left = now
-        .iter()
-        .filter(|(_, n)| matches!(n, Now::Untouched))
-        .count();
+    let count = |is: fn(&Now<E::Row>) -> bool| now.iter().filter(|(_, n)| is(n)).count();
+    let n_computed = count(|n| matches!(n, Now::Done(_)));
+    let n_left = count(|n| matches!(n, Now::Untouched));
     let estimate = plan.estimate;
     let (rows, failed) = gather(experiment, plan, now);
     write_table(&folder.join("sweep.csv"), &rows)?;

@@ -5,7 +5,8 @@ use std::error::Error;
 use std::hint::black_box;
 
 use topo_core::CpuClock;
-use topo_nematic::{Faces, FlowCoupling, FlowParameters, Grid, Material, Particle};
+use topo_nematic::flow::FlowCoupling;
+use topo_nematic::{Faces, FlowParameters, Grid, Material, Particle};
 
 fn main() -> Result<(), Box<dyn Error + Send + Sync>> {
     println!(

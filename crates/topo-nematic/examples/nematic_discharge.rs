@@ -7,10 +7,11 @@
 use std::time::Instant;
 
 use topo_core::Interrupt;
+use topo_core::Progress;
 use topo_nematic::{
     ChargeSettings, ChargedNematic, Discharge, DischargeSettings, FlowParameters, FreeSurface,
-    NematicAccuracy, NematicBattery, NematicError, NematicParameters, Progress, RunHooks,
-    SurfacePattern, SwitchSettings, SwitchTarget,
+    NematicAccuracy, NematicBattery, NematicError, NematicParameters, RunHooks, SurfacePattern,
+    SwitchSettings, SwitchTarget,
 };
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

@@ -4,9 +4,10 @@
 use std::error::Error;
 
 use topo_core::CpuClock;
-use topo_nematic::{
-    Faces, Grid, MacField, NoSlip, Sparse, SparseOptions, Spectral, StokesError, StokesSolver,
+use topo_nematic::stokes::{
+    MacField, NoSlip, Sparse, SparseOptions, Spectral, StokesError, StokesSolver,
 };
+use topo_nematic::{Faces, Grid};
 
 fn main() -> Result<(), Box<dyn Error + Send + Sync>> {
     println!(

@@ -3,14 +3,12 @@
 pub(crate) mod charge;
 pub(crate) mod charge_settings;
 mod charging;
-mod coupled_flow;
 pub(crate) mod discharge;
 pub(crate) mod final_state;
-mod flow_direction;
 pub(crate) mod hooks;
 pub(crate) mod minimum;
-mod ramp;
-pub(crate) mod record;
+pub(crate) mod protocol;
+pub mod record;
 pub(crate) mod switch;
 
 use crate::kernel::run::{Kernel, Threads};

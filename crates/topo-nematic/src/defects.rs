@@ -129,7 +129,7 @@ impl<'a> Tracer<'a> {
         let n = grid.n_cells();
         let Directors {
             order, director, ..
-        } = every_cell(state);
+        } = Directors::of(state);
         let mut fluid = Vec::with_capacity(n);
         for k in 0..nz {
             for j in 0..ny {
@@ -347,27 +347,6 @@ fn smoothed_numbers(values: &[f64], closed: bool) -> Vec<f64> {
         old = new;
     }
     old
-}
-
-/// Order S (largest eigenvalue of Q) of every cell.
-pub fn order_field(state: &NematicState) -> Vec<f64> {
-    every_cell(state).order
-}
-
-/// Director of every cell, with n_z >= 0.
-pub fn director_field(state: &NematicState) -> Vec<[f64; 3]> {
-    let [x, y, z] = every_cell(state).director;
-    x.into_iter()
-        .zip(y)
-        .zip(z)
-        .map(|((x, y), z)| [x, y, z])
-        .collect()
-}
-
-fn every_cell(state: &NematicState) -> Directors {
-    let mut directors = Directors::default();
-    directors.find(state, 0..state.grid().n_cells());
-    directors
 }
 
 #[cfg(test)]

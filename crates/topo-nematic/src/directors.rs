@@ -27,6 +27,13 @@ impl Default for Directors {
 }
 
 impl Directors {
+    /// Those of every cell.
+    pub fn of(state: &NematicState) -> Self {
+        let mut directors = Self::default();
+        directors.find(state, 0..state.grid().n_cells());
+        directors
+    }
+
     /// Finds those of `cells` (indices of the grid).
     pub(crate) fn find(&mut self, state: &NematicState, cells: Range<usize>) {
         let (q, n) = (state.q_tensor(), state.grid().n_cells());

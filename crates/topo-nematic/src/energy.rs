@@ -13,9 +13,9 @@ use crate::vector::dispatch;
 /// Free energy by part, in L xi_N; the bulk part counts from the uniform equilibrium.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct EnergyParts {
-    /// Of distortion.
+    /// Of distortion, L/2 (∂Q)² and the second elastic term.
     pub elastic: f64,
-    /// Of order.
+    /// Of order, the terms in A, B and C.
     pub bulk: f64,
     /// Of weak anchoring.
     pub surface: f64,

@@ -115,7 +115,7 @@ pub enum NematicError {
     },
     /// The flow could not be set up or solved.
     #[error(transparent)]
-    Flow(#[from] crate::StokesError),
+    Flow(#[from] crate::stokes::StokesError),
     /// A checkpoint could not be written or read.
     #[error(transparent)]
     File(#[from] FileError),

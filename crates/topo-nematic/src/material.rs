@@ -26,14 +26,14 @@ pub struct Material {
     pub b: f64,
     /// C, in L/xi_N².
     pub c: f64,
-    /// Elastic constant L.
+    /// Elastic constant L: 1 in reduced units.
     pub elastic_constant: f64,
-    /// Second elastic constant L_2; leave it out and no term is modelled.
+    /// Second elastic constant L_2, in L; leave it out and no term is modelled.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub second_elastic_constant: Option<f64>,
-    /// Rotational mobility Gamma (called the rotational viscosity parameter by `patil2020discharging`).
+    /// Rotational mobility Gamma, of dQ/dt = Gamma H: 1 in reduced units (called the rotational viscosity parameter by `patil2020discharging`).
     pub rotational_mobility: f64,
-    /// Flow alignment chi.
+    /// Flow alignment chi: no unit.
     pub flow_alignment: f64,
     /// Isotropic viscosity eta, in 1/Gamma.
     pub viscosity: f64,

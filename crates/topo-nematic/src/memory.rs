@@ -41,7 +41,7 @@ impl MemoryEstimate {
 }
 
 /// Estimate for a grid, with a discharge in the given precision.
-pub fn estimate(grid: &Grid, precision: Precision) -> MemoryEstimate {
+pub(crate) fn estimate(grid: &Grid, precision: Precision) -> MemoryEstimate {
     let field = |n_bytes: u64| 5 * n_bytes * grid.n_cells() as u64;
     let geometry = 9 * grid.n_cells() as u64;
     MemoryEstimate {

@@ -8,7 +8,7 @@ use crate::directors::Directors;
 /// Mean horizontal tilt of the director, by two definitions.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct OrderParameter {
-    /// (<Q_xz>, <Q_yz>) 2/(3 S_eq), means over the fluid.
+    /// (<Q_xz>, <Q_yz>) 2/(3 S_eq), means over the fluid: the tilt in radians where it is small.
     pub tilt: [f64; 2],
     /// (<n_x>, <n_y>), with the sign of n such that n_z > 0.
     pub director: [f64; 2],
@@ -60,6 +60,20 @@ pub fn order_parameter(state: &NematicState, order: f64) -> OrderParameter {
     OrderParameter {
         tilt: tilt.map(|t| scale * t / count.max(1.0)),
         director: director.map(|d| d / count.max(1.0)),
+    }
+}
+
+impl NematicState {
+    /// Order S, the largest eigenvalue of Q, of every cell.
+    pub fn order_field(&self) -> Vec<f64> {
+        Directors::of(self).order
+    }
+
+    /// Director of every cell, with n_z >= 0.
+    pub fn director_field(&self) -> Vec<[f64; 3]> {
+        let [x, y, z] = Directors::of(self).director;
+        let all = x.into_iter().zip(y).zip(z);
+        all.map(|((x, y), z)| [x, y, z]).collect()
     }
 }
 

@@ -18,7 +18,7 @@ use crate::{Faces, Grid, Material, NematicError};
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ExternalField {
-    /// E.
+    /// E, in the unit that makes chi_a E² an energy density in L/xi_N².
     pub vector: [f64; 3],
     /// Anisotropy chi_a: positive aligns the director with E.
     pub anisotropy: f64,

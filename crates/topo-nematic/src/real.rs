@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 /// A number that fields are stored in: `f64` or `f32`.
 pub trait Real:
     SimdFloatElement
-    + crate::Stored
+    + crate::flow::Stored
     + num::Arithmetic
     + Into<f64>
     + Default

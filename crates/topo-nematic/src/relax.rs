@@ -1,48 +1,19 @@
 //! FIRE, fused with the kernel: a field relaxes to a minimum of its energy.
 
-use serde::{Deserialize, Serialize};
+use topo_core::{Fire, FireSums};
 
 use crate::kernel::run::{Combination, Kernel};
 use crate::real::Real;
 
-/// Downhill steps before the clock runs faster.
-const DELAY: u32 = 5;
-const GROWTH: f64 = 1.1;
-const SHRINK: f64 = 0.5;
-const MIXING_START: f64 = 0.1;
-const MIXING_SHRINK: f64 = 0.99;
-
-/// The clock of a relaxation.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Clock {
-    pub dt: f64,
-    mixing: f64,
-    n_downhill: u32,
-    /// Steps taken.
-    pub n_steps: u64,
-}
-
-impl Clock {
-    /// Whether a relaxation can go on with it.
-    pub(crate) fn is_sound(&self) -> bool {
-        self.dt.is_finite()
-            && self.dt > 0.0
-            && (0.0..=1.0).contains(&self.mixing)
-            && self.n_downhill < u32::MAX / 2
-            && self.n_steps < 1 << 53
-    }
-}
-
 /// Positions and velocities of a relaxation in progress, in the kernel's layout.
 ///
-/// The method is `topo_core::Fire`'s, written in two passes over memory: the molecular field with the sums that decide on the next
-/// step, and the step itself.
+/// The method is [`Fire`], in two passes over memory: the molecular field with the sums that decide on the next step, and the step.
 pub(crate) struct Relaxation<'a, T> {
     kernel: &'a Kernel<T>,
     pub q: Vec<T>,
     pub velocity: Vec<T>,
     force: Vec<T>,
-    pub clock: Clock,
+    pub fire: Fire,
     longest: f64,
 }
 
@@ -58,12 +29,7 @@ impl<'a, T: Real> Relaxation<'a, T> {
             q: vec![T::of(0.0); n],
             velocity: vec![T::of(0.0); n],
             force: vec![T::of(0.0); n],
-            clock: Clock {
-                dt: 0.3 * longest,
-                mixing: MIXING_START,
-                n_downhill: 0,
-                n_steps: 0,
-            },
+            fire: Fire::at_rest(longest),
             longest,
         }
     }
@@ -74,11 +40,11 @@ impl<'a, T: Real> Relaxation<'a, T> {
     }
 
     /// Goes on from what an earlier one had reached.
-    pub(crate) fn restore(&mut self, q: Vec<T>, velocity: Vec<T>, clock: Clock) {
+    pub(crate) fn restore(&mut self, q: Vec<T>, velocity: Vec<T>, fire: Fire) {
         if q.len() == self.q.len() && velocity.len() == self.q.len() {
             self.q = q;
             self.velocity = velocity;
-            self.clock = clock;
+            self.fire = fire;
         }
     }
 
@@ -103,30 +69,14 @@ impl<'a, T: Real> Relaxation<'a, T> {
         if !rms.is_finite() || ff == 0.0 {
             return rms;
         }
-        let clock = &mut self.clock;
-        clock.n_steps += 1;
-        // x <- x + back v before the velocity is stopped.
-        let (mut back, mut keep) = (0.0, 1.0);
-        if fv > 0.0 {
-            clock.n_downhill += 1;
-            if clock.n_downhill > DELAY {
-                clock.dt = (clock.dt * GROWTH).min(self.longest);
-                clock.mixing *= MIXING_SHRINK;
-            }
-        } else if clock.n_steps > 1 {
-            back = -0.5 * clock.dt;
-            keep = 0.0;
-            clock.n_downhill = 0;
-            clock.dt = (clock.dt * SHRINK).max(0.02 * self.longest);
-            clock.mixing = MIXING_START;
-        }
-        let dt = clock.dt;
-        // |v + dt f|, v being stopped or not.
-        let speed = (keep * (vv + 2.0 * dt * fv) + dt * dt * ff).max(0.0).sqrt();
-        let a = clock.mixing;
-        let on_velocity = T::of((1.0 - a) * keep);
-        let on_force = T::of((1.0 - a) * dt + a * speed / ff.sqrt());
-        let (forth, back) = (T::of(dt), T::of(back));
+        let sums = FireSums {
+            force_squared: ff,
+            power: fv,
+            speed_squared: vv,
+        };
+        let step = self.fire.step(self.longest, sums);
+        let (on_velocity, on_force) = (T::of(step.on_velocity), T::of(step.on_force));
+        let (forth, back) = (T::of(step.forth), T::of(step.back));
         self.kernel
             .for_each3(&mut self.q, &mut self.velocity, &self.force, |x, v, f| {
                 let next = on_velocity * *v + on_force * f;

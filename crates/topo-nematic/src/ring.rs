@@ -67,7 +67,7 @@ pub fn ring(state: &NematicState, threshold: f64) -> Option<Ring> {
 
 /// The closed line of the ring, relative to the particle's centre (xi_N): one point a sector of azimuth.
 ///
-/// Where the core of a disclination lies against the particle, [`defect_lines`](crate::defect_lines) ends there; this line goes on.
+/// Where the core of a disclination lies against the particle, [`defect_lines`](crate::defects::defect_lines) ends there; this line goes on.
 pub fn ring_line(state: &NematicState, threshold: f64) -> Option<Vec<[f64; 3]>> {
     let points = sectors(state, threshold)?.into_iter().enumerate();
     Some(points.map(|(s, centre)| place(s, centre)).collect())

@@ -23,8 +23,9 @@ pub(crate) trait Drift<T> {
 
 /// A field on its way, with all that a step needs; arrays are in the kernel's layout.
 ///
-/// The method is `topo_core::Rkc2`. A stage is one pass: the molecular field of the last one, and the combination of the last, the one before,
-/// the start and its rate.
+/// The method and its coefficients are those of [`topo_core::Rkc2`], applied here a second time: a stage is one pass over memory, in single
+/// or double precision (the molecular field of the last one, and the combination of the last, the one before, the start and its rate),
+/// where that one asks a model for rates as vectors and combines them in passes of its own.
 ///
 /// A drift G(Q), as flow adds it, answers the molecular field H and is as stiff; each of its values is worth many stages. So a step sees it
 /// as a line in time, less a share of H that leaves what is stable:

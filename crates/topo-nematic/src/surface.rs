@@ -5,7 +5,6 @@ use std::collections::HashMap;
 use serde::{Deserialize, Serialize};
 
 use crate::NematicState;
-use crate::defects::order_field;
 use crate::tensor::order_and_director;
 
 /// A surface of triangles.
@@ -37,7 +36,7 @@ pub fn isosurface(state: &NematicState, level: f64) -> TriangleMesh {
     let [nx, ny, nz] = grid.cells();
     let mut mesh = TriangleMesh::default();
     let mut vertices: HashMap<(usize, usize), u32> = HashMap::new();
-    let order = order_field(state);
+    let order = state.order_field();
     for k in 0..nz - 1 {
         for j in 0..ny - 1 {
             for i in 0..nx - 1 {

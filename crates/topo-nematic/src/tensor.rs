@@ -1,12 +1,11 @@
 //! Symmetric traceless tensors as five numbers: invariants, director, order.
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Vector3;
+
+pub use nalgebra::Matrix3;
 
 /// Components (xx, xy, xz, yy, yz) of a symmetric traceless tensor; zz = -xx - yy.
 pub type Tensor5 = [f64; 5];
-
-/// Number of stored components.
-pub const N_COMPONENTS: usize = 5;
 
 /// The uniaxial tensor of order `order` about the unit vector `director`.
 ///

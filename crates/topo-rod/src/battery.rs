@@ -5,6 +5,7 @@ pub(crate) mod cut;
 pub(crate) mod discharge;
 pub(crate) mod hooks;
 mod phase;
+pub(crate) mod protocol;
 pub(crate) mod record;
 mod simulation;
 mod tips;

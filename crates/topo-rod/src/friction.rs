@@ -17,7 +17,7 @@ use crate::contact::ActivePair;
 /// `patil2020discharging`, `patil2020topological`.
 #[derive(Debug, Clone, Copy)]
 pub struct Friction {
-    /// η_f/η.
+    /// η_f/η: no unit.
     pub ratio: f64,
     /// Distance below which strands rub, in h.
     pub range: f64,

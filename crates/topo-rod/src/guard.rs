@@ -111,34 +111,12 @@ pub(crate) fn certify(
     pairs: &ContactPairs,
     near: &mut Vec<(u32, u32)>,
 ) -> Result<(), Rejection> {
-    let (x, n, n_edges) = (from.vertices(), from.n_vertices(), from.n_edges());
-    let moved = |i: usize| Vector3::new(step[i], step[n + i], step[2 * n + i]);
+    let (x, n_edges) = (from.vertices(), from.n_edges());
     let longest = (0..n_edges)
         .map(|j| (x[from.edge_end(j)] - x[j]).norm_squared())
         .fold(0.0, f64::max)
         .sqrt();
-    let check = |i: usize, j: usize| -> Result<(), Rejection> {
-        let (i1, j1) = (from.edge_end(i), from.edge_end(j));
-        let limit = 2.0 * largest + longest;
-        // the bound by the middles costs no square root of a segment pair
-        let middles = (x[i] + x[i1] - x[j] - x[j1]).norm_squared() * 0.25;
-        if middles > limit * limit {
-            return Ok(());
-        }
-        let (a, b) = ([moved(i), moved(i1)], [moved(j), moved(j1)]);
-        let relative = a
-            .iter()
-            .flat_map(|p| b.iter().map(move |q| (p - q).norm_squared()))
-            .fold(0.0, f64::max)
-            .sqrt();
-        if relative < segment_distance(&x[i], &x[i1], &x[j], &x[j1]) {
-            Ok(())
-        } else {
-            Err(Rejection::Crossing {
-                edges: (i.min(j), i.max(j)),
-            })
-        }
-    };
+    let limit = 2.0 * largest + longest;
     // neighbours along the rod, which the contact list leaves out
     let joined = from.is_closed() || pairs.is_cyclic();
     let farthest = if joined { n_edges / 2 } else { n_edges };
@@ -151,18 +129,18 @@ pub(crate) fn certify(
         for k in 2..=width {
             let j = i + k;
             if j < n_edges {
-                check(i, j)?;
+                certify_pair(from, step, limit, i, j)?;
             } else if joined {
-                check(i, j - n_edges)?;
+                certify_pair(from, step, limit, i, j - n_edges)?;
             }
         }
     }
     // strands in reach of each other: edges around each listed pair of vertices
-    if !pairs.vertices_within(2.0 * largest + longest, x, near) {
+    if !pairs.vertices_within(limit, x, near) {
         // so coarse a rod that the list is shorter than its edges
         for i in 0..n_edges {
             for j in i + 2..n_edges - usize::from(joined && i == 0) {
-                check(i, j)?;
+                certify_pair(from, step, limit, i, j)?;
             }
         }
     }
@@ -170,12 +148,44 @@ pub(crate) fn certify(
         for i in edges_at(from, a as usize) {
             for j in edges_at(from, b as usize) {
                 if i != j && from.edge_end(i) != j && from.edge_end(j) != i {
-                    check(i, j)?;
+                    certify_pair(from, step, limit, i, j)?;
                 }
             }
         }
     }
     Ok(())
+}
+
+/// Proof for the edges i and j, none of whose points can meet if their middles are further apart than `limit`.
+#[inline]
+fn certify_pair(
+    from: &RodState,
+    step: &[f64],
+    limit: f64,
+    i: usize,
+    j: usize,
+) -> Result<(), Rejection> {
+    let (x, n) = (from.vertices(), from.n_vertices());
+    let (i1, j1) = (from.edge_end(i), from.edge_end(j));
+    // the bound by the middles costs no square root of a segment pair
+    let middles = (x[i] + x[i1] - x[j] - x[j1]).norm_squared() * 0.25;
+    if middles > limit * limit {
+        return Ok(());
+    }
+    let moved = |i: usize| Vector3::new(step[i], step[n + i], step[2 * n + i]);
+    let (a, b) = ([moved(i), moved(i1)], [moved(j), moved(j1)]);
+    let relative = a
+        .iter()
+        .flat_map(|p| b.iter().map(move |q| (p - q).norm_squared()))
+        .fold(0.0, f64::max)
+        .sqrt();
+    if relative < segment_distance(&x[i], &x[i1], &x[j], &x[j1]) {
+        Ok(())
+    } else {
+        Err(Rejection::Crossing {
+            edges: (i.min(j), i.max(j)),
+        })
+    }
 }
 
 /// The edges that meet at a vertex.

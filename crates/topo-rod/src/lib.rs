@@ -29,6 +29,7 @@ pub use battery::charge::{ChargeSettings, ChargedRod};
 pub use battery::cut::{CutCandidate, CutRod, CutSite, cut_candidates};
 pub use battery::discharge::{Discharge, DischargeSettings};
 pub use battery::hooks::RunHooks;
+pub use battery::protocol::Protocol;
 pub use battery::record::{PhaseReport, RodPhase, RodSample, RunRecord};
 pub use circle::{cut_circle_energy, cut_circle_time};
 pub use density::smoothed_density;
@@ -37,6 +38,7 @@ pub use error::RodError;
 pub use geometry::Geometry;
 pub use guard::Guards;
 pub use model::{RodModel, WorkAccount};
+pub use nalgebra::{Matrix3, Vector3};
 pub use parameters::{
     Accuracy, ContactParameters, FrictionParameters, FrictionRange, IntegratorKind, Reading,
     RodParameters, Tube,

@@ -107,6 +107,23 @@ impl CentrelineViscosity {
         self.n_patterns
     }
 
+    /// Finds a pattern of entries, unless that at hand serves.
+    fn keep_pattern(
+        &mut self,
+        state: &RodState,
+        pairs: &ContactPairs,
+        rubs: bool,
+    ) -> Result<(), SparseError> {
+        let (n, none) = (state.n_vertices(), std::iter::empty);
+        if self.solver.is_none() || rubs && !self.pairs.serve(n, pairs.active(), none()) {
+            if rubs {
+                self.pairs.renew(state, pairs, none());
+            }
+            self.build_pattern(state.chain())?;
+        }
+        Ok(())
+    }
+
     /// Assembles and factorises the matrix at a state. Without friction it is constant and factorised once.
     pub fn prepare(
         &mut self,
@@ -115,14 +132,8 @@ impl CentrelineViscosity {
         friction: Option<Friction>,
     ) -> Result<(), SparseError> {
         let chain = state.chain();
-        let (n, none) = (chain.n_vertices(), std::iter::empty);
         let rubs = friction.is_some();
-        if self.solver.is_none() || rubs && !self.pairs.serve(n, pairs.active(), none()) {
-            if rubs {
-                self.pairs.renew(state, pairs, none());
-            }
-            self.build_pattern(chain)?;
-        }
+        self.keep_pattern(state, pairs, rubs)?;
         if self.is_current && !rubs {
             return Ok(());
         }

@@ -135,19 +135,7 @@ impl SparseCholesky {
         ordering: Option<&[usize]>,
         threshold: SupernodalThreshold,
     ) -> Result<Self, SparseError> {
-        if n == 0 || n >= i32::MAX as usize {
-            return Err(SparseError::Size { n });
-        }
-        if let Some(&(i, j)) = pattern
-            .iter()
-            .find(|(i, j)| *i as usize >= n || *j as usize >= n)
-        {
-            return Err(SparseError::OutOfBounds {
-                row: i as usize,
-                column: j as usize,
-                n,
-            });
-        }
+        check_size(n, pattern)?;
         let memory_error = || SparseError::OutOfMemory { n };
         let forward = match ordering {
             Some(order) => checked_permutation(n, order)?,
@@ -164,17 +152,7 @@ impl SparseCholesky {
                 .map(|(i, j)| (inverse[*i as usize], inverse[*j as usize]))
         };
         let upper_pattern = compressed(n, permuted(), true);
-        let params = CholeskySymbolicParams {
-            supernodal_flop_ratio_threshold: threshold,
-            ..Default::default()
-        };
-        let symbolic = factorize_symbolic_cholesky(
-            upper_pattern.as_ref(),
-            Side::Upper,
-            SymmetricOrdering::Identity,
-            params,
-        )
-        .map_err(|_| memory_error())?;
+        let symbolic = symbolic(&upper_pattern, threshold).ok_or_else(memory_error)?;
         let upper = matches!(symbolic.raw(), SymbolicCholeskyRaw::Simplicial(_));
         let pattern = if upper {
             upper_pattern
@@ -321,21 +299,22 @@ impl SparseCholesky {
             }
             Err(LltError::Generic(_)) => return Err(SparseError::OutOfMemory { n: self.n_rows() }),
         }
-        // A pivot that is rounding noise of its diagonal passes the sign test by luck alone.
+        self.check_pivots()?;
+        self.factored = true;
+        Ok(())
+    }
+
+    /// Refuses a pivot that is rounding noise of its diagonal: it passes the sign test by luck alone.
+    fn check_pivots(&self) -> Result<(), SparseError> {
         let noise = f64::EPSILON * self.n_rows() as f64;
-        for (column, (diagonal, pivot)) in self
-            .diagonal_slots
-            .iter()
-            .zip(&self.pivot_slots)
-            .enumerate()
-        {
+        let slots = self.diagonal_slots.iter().zip(&self.pivot_slots);
+        for (column, (diagonal, pivot)) in slots.enumerate() {
             let pivot = self.factor_values[*pivot as usize];
             if !pivot.is_finite() || pivot * pivot <= noise * self.values[*diagonal as usize] {
                 let column = self.forward[column] as usize;
                 return Err(SparseError::NotPositiveDefinite { column });
             }
         }
-        self.factored = true;
         Ok(())
     }
 
@@ -425,6 +404,35 @@ impl std::fmt::Debug for SparseCholesky {
             .field("supernodal", &!self.upper)
             .field("n_factorisations", &self.n_factorisations)
             .finish()
+    }
+}
+
+/// The symbolic factor of a pattern as it is ordered; none where memory does not suffice.
+fn symbolic(
+    upper: &SymbolicSparseColMat<u32>,
+    threshold: SupernodalThreshold,
+) -> Option<SymbolicCholesky<u32>> {
+    let params = CholeskySymbolicParams {
+        supernodal_flop_ratio_threshold: threshold,
+        ..Default::default()
+    };
+    let ordering = SymmetricOrdering::Identity;
+    factorize_symbolic_cholesky(upper.as_ref(), Side::Upper, ordering, params).ok()
+}
+
+/// Refuses an empty or a too large matrix, and entries outside of it.
+fn check_size(n: usize, pattern: &[(u32, u32)]) -> Result<(), SparseError> {
+    if n == 0 || n >= i32::MAX as usize {
+        return Err(SparseError::Size { n });
+    }
+    let outside = |(i, j): &&(u32, u32)| *i as usize >= n || *j as usize >= n;
+    match pattern.iter().find(outside) {
+        Some(&(i, j)) => Err(SparseError::OutOfBounds {
+            row: i as usize,
+            column: j as usize,
+            n,
+        }),
+        None => Ok(()),
     }
 }
 

@@ -36,6 +36,37 @@ pub struct Made {
     pub notes: Vec<String>,
 }
 
+/// Writes the pictures of a sweep into `place`, and adds them to `files`; gives a line that says what was drawn.
+fn write_shots(
+    sweep: &DrawnSweep,
+    place: &Path,
+    interrupt: &Interrupt,
+    files: &mut Vec<PathBuf>,
+) -> Result<String, ViewError> {
+    let mut names = Vec::new();
+    for shot in &sweep.shots {
+        check(interrupt)?;
+        let picture = &shot.drawn.picture;
+        for (extension, bytes) in [
+            ("csv", shot.drawn.csv.as_bytes()),
+            ("svg", picture.svg.as_bytes()),
+            ("png", &picture.png[..]),
+        ] {
+            let path = place.join(format!("{}.{extension}", shot.name));
+            data::write(&path, bytes)?;
+            files.push(path);
+        }
+        names.push(shot.name.as_str());
+    }
+    Ok(format!(
+        "{}: {}, {} discharges: {}",
+        sweep.name,
+        sweep.what,
+        sweep.cases.rows.len(),
+        names.join(", ")
+    ))
+}
+
 /// Draws the sweeps found into `FOLDER/figures`, the page last; `done` hears of each sweep. Nothing is written before all is drawn.
 ///
 /// # Errors
@@ -56,28 +87,7 @@ pub fn draw(
     let place = found.folder.join("figures");
     let (mut files, mut drawn) = (Vec::new(), Vec::new());
     for sweep in &sweeps {
-        let mut names = Vec::new();
-        for shot in &sweep.shots {
-            check(interrupt)?;
-            let picture = &shot.drawn.picture;
-            for (extension, bytes) in [
-                ("csv", shot.drawn.csv.as_bytes()),
-                ("svg", picture.svg.as_bytes()),
-                ("png", &picture.png[..]),
-            ] {
-                let path = place.join(format!("{}.{extension}", shot.name));
-                data::write(&path, bytes)?;
-                files.push(path);
-            }
-            names.push(shot.name.clone());
-        }
-        drawn.push(format!(
-            "{}: {}, {} discharges: {}",
-            sweep.name,
-            sweep.what,
-            sweep.cases.rows.len(),
-            names.join(", ")
-        ));
+        drawn.push(write_shots(sweep, &place, interrupt, &mut files)?);
     }
     let page = place.join("index.html");
     data::write(

@@ -6,6 +6,7 @@
 //!
 //! Fonts, scripts and templates are inside the library: nothing is looked for at run time but the results.
 
+pub mod chart;
 pub mod data;
 mod error;
 pub mod export;

@@ -137,19 +137,18 @@ fn case(folder: &Path, k: usize, cut: &Cut, curve: &[Vector3<f64>]) {
     let mut charged = "s,x,y,z,twist,energy_density\n".to_owned();
     for (i, p) in curve.iter().enumerate() {
         let s = i as f64 * LENGTH / N as f64;
-        writeln!(
-            charged,
-            "{s},{},{},{},{},{}",
-            p.x,
-            p.y,
-            p.z,
-            cut.twist,
-            density(i)
-        )
-        .unwrap();
+        let (x, y, z, twist, w) = (p.x, p.y, p.z, cut.twist, density(i));
+        writeln!(charged, "{s},{x},{y},{z},{twist},{w}").unwrap();
     }
     write(&folder.join("charged.csv"), charged.as_bytes()).unwrap();
+    write(&folder.join("series.csv"), series(k, cut).as_bytes()).unwrap();
+    let shots = snapshots(cut, curve, density);
+    write(&folder.join("snapshots.csv"), shots.as_bytes()).unwrap();
+    write(&folder.join("run.json"), b"{\"warnings\":[]}").unwrap();
+}
 
+/// An energy that falls in two exponentials, and a knot that opens on the way.
+fn series(k: usize, cut: &Cut) -> String {
     let mut series = "cut,time,energy,bend,twist_energy,stretch,contact_energy,dissipated_viscosity,dissipated_twist,dissipated_friction,work,writhe,total_twist,n_contacts,min_distance,end_to_end,knot,knot_probability\n".to_owned();
     let t99 = cut.t99.unwrap();
     let path = ["7_4", "5_2", "3_1", "0_1"];
@@ -174,8 +173,12 @@ fn case(folder: &Path, k: usize, cut: &Cut, curve: &[Vector3<f64>]) {
         )
         .unwrap();
     }
-    write(&folder.join("series.csv"), series.as_bytes()).unwrap();
+    series
+}
 
+/// A rod that straightens.
+fn snapshots(cut: &Cut, curve: &[Vector3<f64>], density: impl Fn(usize) -> f64) -> String {
+    let t99 = cut.t99.unwrap();
     let mut shots = "cut,time,s,x,y,z,energy_density\n".to_owned();
     for shot in 0..10 {
         let f = shot as f64 / 9.0;
@@ -196,8 +199,7 @@ fn case(folder: &Path, k: usize, cut: &Cut, curve: &[Vector3<f64>]) {
             .unwrap();
         }
     }
-    write(&folder.join("snapshots.csv"), shots.as_bytes()).unwrap();
-    write(&folder.join("run.json"), b"{\"warnings\":[]}").unwrap();
+    shots
 }
 
 fn knot_row(knot: &str, k: usize) -> KnotRow {

@@ -1,9 +1,7 @@
 //! `cargo xtask ci`: what must pass before a change lands.
 
-use super::cargo::{cargo, step};
+use super::cargo::{cargo, step, target};
 use super::{dependencies, packages, test};
-use crate::workspace::workspace;
-use std::path::PathBuf;
 use topo_cli::CliError;
 use topo_cli::{note, say};
 
@@ -66,9 +64,4 @@ pub fn run() -> Result<(), CliError> {
     } else {
         Err(CliError::Step(format!("ci {verdict}")))
     }
-}
-
-/// Cargo's target folder.
-fn target() -> PathBuf {
-    std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| workspace().join("target"), PathBuf::from)
 }

@@ -1,6 +1,7 @@
 //! `cargo xtask test`: tests, doc tests and examples, with their counts.
 
-use super::cargo::{CHECKED, cargo, step};
+use super::cargo::{CHECKED, cargo, step, target};
+use super::python::{self, Tested};
 use crate::cli::TestArgs;
 use crate::workspace::workspace;
 use std::path::{Path, PathBuf};
@@ -38,6 +39,31 @@ impl Counts {
                 _ => {}
             }
         }
+    }
+
+    /// Adds the closing line of pytest, such as `1 failed, 12 passed, 2 skipped in 3.21s`, if `line` is one.
+    pub fn add_pytest(&mut self, line: &str) {
+        let line = line.trim_matches(['=', ' ']);
+        let Some((list, _)) = line.rsplit_once(" in ").filter(|(_, t)| t.contains('s')) else {
+            return;
+        };
+        for part in list.split(", ") {
+            match part
+                .split_once(' ')
+                .map(|(n, what)| (n.parse::<usize>(), what))
+            {
+                Some((Ok(n), "passed" | "xfailed")) => self.passed += n,
+                Some((Ok(n), "failed" | "error" | "errors" | "xpassed")) => self.failed += n,
+                Some((Ok(n), "skipped")) => self.skipped += n,
+                _ => {}
+            }
+        }
+    }
+
+    fn add_all(&mut self, other: Self) {
+        self.passed += other.passed;
+        self.failed += other.failed;
+        self.skipped += other.skipped;
     }
 
     fn outcome(&mut self, ok: bool) {
@@ -124,6 +150,17 @@ pub fn all(long: bool) -> Result<Report, CliError> {
         report.counts.outcome(went);
         report.ok &= went;
     }
+    let program = std::env::current_exe().unwrap_or_default();
+    match python::test(&target(), &program, long)? {
+        Tested::Ran(counts, ok) => {
+            report.counts.add_all(counts);
+            report.ok &= ok;
+        }
+        Tested::Skipped(n, note) => {
+            report.counts.skipped += n;
+            report.notes.push(note);
+        }
+    }
     // A build that fails leaves no closing line of its own.
     if !report.ok && report.counts.failed == 0 {
         report.counts.failed = 1;
@@ -159,6 +196,9 @@ fn harness() -> Command {
         "--workspace",
         "--exclude",
         "topo-bench",
+        // without tests in Rust, and with features of its own
+        "--exclude",
+        "topo-py",
     ]);
     command.args(CHECKED);
     command
@@ -229,6 +269,15 @@ mod tests {
             }
         );
         assert_eq!(counts.to_string(), "15 passed, 1 failed, 2 skipped");
+    }
+
+    #[test]
+    fn closing_lines_of_pytest_are_added_up() {
+        let mut counts = Counts::default();
+        counts.add_pytest("12 passed, 2 skipped, 1 warning in 3.21s");
+        counts.add_pytest("=== 1 failed, 3 passed, 1 error in 61.20s (0:01:01) ===");
+        counts.add_pytest("12 cases in all");
+        assert_eq!(counts.to_string(), "15 passed, 2 failed, 2 skipped");
     }
 
     #[test]

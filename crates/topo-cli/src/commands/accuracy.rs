@@ -9,8 +9,8 @@ use crate::progress::Progress;
 use topo_analysis::{quantile, write_table};
 use topo_knots::KnotTable;
 use topo_lab::{
-    ACCURACY_CASES, ElasticScene, Event, Preset, SweepSettings, measure_accuracy, tight_shapes,
-    with_jobs,
+    ACCURACY_CASES, AccuracyRow, ElasticScene, Event, Preset, SweepSettings, measure_accuracy,
+    tight_shapes, with_jobs,
 };
 
 /// Runs it.
@@ -46,10 +46,17 @@ fn accuracy(preset: Preset, settings: &SweepSettings) -> Result<(), CliError> {
     output::out(&settings.out);
     output::table(&path);
     output::data("cases", &rows);
+    show(&rows);
+    say!("written to {}", path.display());
+    Ok(())
+}
+
+/// Prints the rows, and how large their errors are.
+fn show(rows: &[AccuracyRow]) {
     say!(
         "knot    theta'h     cut     t50   error      t99   error  E/E_ref   CPU s  CPU s of reference"
     );
-    for r in &rows {
+    for r in rows {
         let cell = |t: Option<f64>| t.map_or_else(|| "      -".to_owned(), |t| format!("{t:7.3}"));
         let error =
             |e: Option<f64>| e.map_or_else(|| "      -".to_owned(), |e| format!("{e:+6.2}%"));
@@ -67,17 +74,12 @@ fn accuracy(preset: Preset, settings: &SweepSettings) -> Result<(), CliError> {
             r.cpu_seconds_reference
         );
     }
+    let of = |error: fn(&AccuracyRow) -> Option<f64>| -> Vec<f64> {
+        rows.iter().filter_map(error).collect()
+    };
     for (name, errors) in [
-        (
-            "t50",
-            rows.iter()
-                .filter_map(|r| r.t50_error_percent)
-                .collect::<Vec<_>>(),
-        ),
-        (
-            "t99",
-            rows.iter().filter_map(|r| r.t99_error_percent).collect(),
-        ),
+        ("t50", of(|r| r.t50_error_percent)),
+        ("t99", of(|r| r.t99_error_percent)),
     ] {
         let sizes = || errors.iter().map(|e| e.abs());
         if let (Some(median), Some(most)) = (quantile(sizes(), 0.5), quantile(sizes(), 0.9)) {
@@ -87,6 +89,4 @@ fn accuracy(preset: Preset, settings: &SweepSettings) -> Result<(), CliError> {
             );
         }
     }
-    say!("written to {}", path.display());
-    Ok(())
 }

@@ -140,7 +140,8 @@ fn cell(row: &BucklingRow) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use topo_nematic::{Boundary, ChargeStop};
+    use topo_nematic::Boundary;
+    use topo_nematic::record::ChargeStop;
 
     fn row(radius: f64, q: u32, boundary: Boundary, order: f64) -> BucklingRow {
         BucklingRow {

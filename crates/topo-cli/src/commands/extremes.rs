@@ -1,5 +1,6 @@
 //! `topo extremes`: runs at the extremes, as tables, maps and a report.
 
+use std::path::Path;
 use std::time::Instant;
 
 use super::settings::threads;
@@ -14,6 +15,27 @@ use topo_view::{data, stability};
 
 /// Changes with whatever changes the outcome of a run.
 const VERSION: u32 = 3;
+
+/// The rows of a table; none if it is not there.
+fn rows_in(path: &Path) -> Result<Vec<StabilityRow>, CliError> {
+    if path.exists() {
+        Ok(read_table(path)?)
+    } else {
+        Ok(Vec::new())
+    }
+}
+
+/// Writes the table and the picture of a system's map.
+fn write_map(folder: &Path, system: &str, rows: &[StabilityRow]) -> Result<(), CliError> {
+    let table = folder.join(format!("{system}.csv"));
+    write_table(&table, rows)?;
+    output::table(&table);
+    let picture = stability::draw(rows)?;
+    for (extension, bytes) in [("png", &picture.png[..]), ("svg", picture.svg.as_bytes())] {
+        data::write(&folder.join(format!("{system}.{extension}")), bytes)?;
+    }
+    Ok(())
+}
 
 pub fn run(args: &SystemsArgs) -> Result<(), CliError> {
     let jobs = threads(args.work.jobs)?;
@@ -33,10 +55,10 @@ pub fn run(args: &SystemsArgs) -> Result<(), CliError> {
         // Runs of another version or quality are not taken for these.
         let kept = format!("{}-{}-v{VERSION}.runs.csv", system.name(), args.quality);
         let kept = folder.join(kept.to_lowercase());
-        let known: Vec<StabilityRow> = if kept.exists() && !args.work.fresh {
-            read_table(&kept)?
-        } else {
+        let known = if args.work.fresh {
             Vec::new()
+        } else {
+            rows_in(&kept)?
         };
         let n_runs = n_extremes(system);
         let progress = Progress::start(system.name(), n_runs);
@@ -54,16 +76,7 @@ pub fn run(args: &SystemsArgs) -> Result<(), CliError> {
             return Err(CliError::Interrupted);
         }
         progress.finish();
-        let table = folder.join(format!("{}.csv", system.name()));
-        write_table(&table, &rows)?;
-        output::table(&table);
-        let picture = stability::draw(&rows)?;
-        for (extension, bytes) in [("png", &picture.png[..]), ("svg", picture.svg.as_bytes())] {
-            data::write(
-                &folder.join(format!("{}.{extension}", system.name())),
-                bytes,
-            )?;
-        }
+        write_map(&folder, system.name(), &rows)?;
         let wall = format!("{:.0} s", start.elapsed().as_secs_f64());
         let summary = stability::summary(system.name(), &rows, &wall);
         output::one_more("summaries", &summary);

@@ -70,7 +70,13 @@ pub fn run(args: &FiguresArgs, workspace: Option<&Path>) -> Result<(), CliError>
         rows.for_each(|r| record.warn(&r.warnings));
     }
     drawn.write_pages(args, &mut record)?;
-    for d in &drawn.figures[..n_drawn] {
+    show(results, &drawn.figures[..n_drawn], &record);
+    failures.into_result()
+}
+
+/// Prints what was found, the warnings, and where the page is.
+fn show(results: &Path, drawn: &[Done], record: &Provenance) {
+    for d in drawn {
         let name = d.figure.name;
         output::table(&results.join(format!("figures/{name}.csv")));
         output::one_more("figures", json!({ "name": name, "finding": d.finding }));
@@ -82,7 +88,6 @@ pub fn run(args: &FiguresArgs, workspace: Option<&Path>) -> Result<(), CliError>
     let page = results.join("index.html");
     output::data("page", page.display().to_string());
     say!("gallery: {}", page.display());
-    failures.into_result()
 }
 
 /// Refuses to draw what has neither a table nor a finished case, before anything is done.

@@ -3,9 +3,8 @@
 use std::path::Path;
 
 use crate::duration::duration;
-use crate::error::CliError;
 use crate::output;
-use topo_analysis::{median, quantile, write_table};
+use topo_analysis::{median, quantile};
 use topo_lab::{ErrorRow, Grant, Wish};
 
 /// Tells which setting grants a wish.
@@ -27,11 +26,9 @@ pub fn tell_grant(grant: &Grant) {
     );
 }
 
-/// Writes `errors.csv` beside the table of the results and tells what is in it.
-pub fn tell_errors(grant: &Grant, rows: &[ErrorRow], folder: &Path) -> Result<(), CliError> {
-    let path = folder.join("errors.csv");
-    write_table(&path, rows)?;
-    output::table(&path);
+/// Tells what is in the table of errors at `path`.
+pub fn tell_errors(grant: &Grant, rows: &[ErrorRow], path: &Path) {
+    output::table(path);
     say!("estimated errors:");
     for r in rows {
         let time = r
@@ -64,5 +61,4 @@ pub fn tell_errors(grant: &Grant, rows: &[ErrorRow], folder: &Path) -> Result<()
             );
         }
     }
-    Ok(())
 }

@@ -43,7 +43,8 @@ pub fn scene(
         let checked = swept.check(grant, settings, &|event| reporter.report(event))?;
         reporter.finish(checked.as_ref().is_some_and(|c| c.is_interrupted))?;
         if let Some(checked) = checked {
-            by_wish::tell_errors(grant, &checked.errors, &folder)?;
+            let path = checked.write(&folder)?;
+            by_wish::tell_errors(grant, &checked.errors, &path);
             failures.add(&checked.failed, &checked.folder);
         }
     }

@@ -24,6 +24,22 @@ pub struct Case {
     edges: f64,
 }
 
+impl Case {
+    /// The vertices, charged and at the end of a run with these angles.
+    fn vertices(&self, angles: &[f64]) -> Vec<Vertex> {
+        let n = angles.len();
+        let vertex = |i: usize| {
+            let share = i as f64 / n as f64;
+            Vertex {
+                s: share * self.length,
+                charged: share * self.turn,
+                end: i.checked_sub(1).map_or(0.0, |k| angles[k]),
+            }
+        };
+        (0..=n).map(vertex).collect()
+    }
+}
+
 const SHARES: [f64; 4] = [0.5, 0.9, 0.95, 0.99];
 
 impl Experiment {
@@ -168,17 +184,7 @@ impl topo_lab::Experiment for Experiment {
         let series: Vec<Sample> = curve.time().iter().enumerate().map(sample).collect();
         let mut folder = place.open()?;
         folder.table("series.csv", &series)?;
-        let n = run.angles.len();
-        let vertex = |i: usize| {
-            let share = i as f64 / n as f64;
-            Vertex {
-                s: share * case.length,
-                charged: share * case.turn,
-                end: i.checked_sub(1).map_or(0.0, |k| run.angles[k]),
-            }
-        };
-        let vertices: Vec<Vertex> = (0..=n).map(vertex).collect();
-        folder.table("angles.csv", &vertices)?;
+        folder.table("angles.csv", &case.vertices(&run.angles))?;
         let about = About {
             case: json!(case),
             scene: json!(self.0),

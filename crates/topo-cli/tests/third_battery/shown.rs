@@ -1,6 +1,6 @@
 //! What pictures and exports must know of it.
 
-use nalgebra::Vector3;
+use topo_core::Vector3;
 use topo_view::export::{Archive, Array, Files, Finished, Wanted, line};
 use topo_view::guide::{Curve, Guide, Quantity, Setting, column, result};
 use topo_view::{Shown, ViewError};

@@ -4,7 +4,6 @@ use std::fmt;
 
 /// Which phase a run is in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
 pub enum Phase {
     /// Relaxing with what stores the energy.
     Charge,

@@ -1,313 +1,202 @@
 //! FIRE: fast inertial relaxation to a minimum of the energy, by forces alone.
 
-use crate::check::{InvalidValue, in_range, positive};
-use crate::control::Rejection;
+use serde::{Deserialize, Serialize};
 
-/// Steps of downhill motion before the clock runs faster.
-const DELAY: u64 = 20;
+use crate::hooks::MOST_COUNTED;
+
+/// Successive downhill steps before the clock runs faster.
+const DELAY: u32 = 5;
 const GROWTH: f64 = 1.1;
 const SHRINK: f64 = 0.5;
-const MIXING_START: f64 = 0.25;
+const MIXING_START: f64 = 0.1;
 const MIXING_SHRINK: f64 = 0.99;
-/// The clock stays within these multiples of the first step.
-const SLOWEST: f64 = 0.02;
-/// Successive uphill steps after which the force cannot be the gradient of anything.
-const MAX_UPHILL: u64 = 2000;
+/// First and shortest time step, as shares of the longest.
+const FIRST: f64 = 0.3;
+const SHORTEST: f64 = 0.02;
 
-/// Where a relaxation stands.
-#[derive(Clone, Copy, Debug)]
-pub struct Relaxed<'a> {
-    /// Steps taken.
-    pub step: u64,
-    /// Positions.
-    pub positions: &'a [f64],
-    /// Force at the positions.
-    pub force: &'a [f64],
-    /// Largest absolute component of the force.
-    pub largest_force: f64,
-}
-
-/// Writes the force at the given positions.
-pub type ForceFn<'a> = dyn FnMut(&[f64], &mut [f64]) -> Result<(), Rejection> + 'a;
-
-/// Why a relaxation ended.
-#[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
-pub enum RelaxationEnd {
-    /// The caller's test was met.
-    Converged,
-    /// The limit of steps was reached.
-    StepLimit,
-    /// The motion was uphill for thousands of steps: the force is no gradient.
-    Uphill,
-    /// The force could not be had, or is not finite; positions are the last ones tried.
-    Refused(Rejection),
-}
-
-/// Result of a relaxation.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Relaxation {
-    /// Why it ended.
-    pub end: RelaxationEnd,
-    /// Steps taken, which is one less than evaluations of the force.
-    pub n_steps: u64,
-    /// Largest absolute component of the last force.
-    pub largest_force: f64,
-}
-
-/// Minimiser by damped inertial motion that stops and restarts whenever it runs uphill.
+/// Damped inertial motion that stops and restarts whenever it runs uphill.
 ///
 /// ```math
 /// v \leftarrow (1 - a)(v + F\,\Delta t) + a\,|v + F\,\Delta t|\,F/|F|, \quad x \leftarrow x + v\,\Delta t
 /// ```
 ///
-/// The semi-implicit form with a half step back after an uphill one. Needs no Hessian and no line search, and a cap on the
-/// displacement keeps contacts from being jumped over. Masses are 1: scale the unknowns, or the forces, to equal stiffness.
+/// The semi-implicit form with a half step back after an uphill one. Needs no Hessian and no line search. Masses are 1: scale the
+/// unknowns, or the forces, to equal stiffness. Three sums over all unknowns decide on a step, and the step is a combination of
+/// position, velocity and force: how they are stored, and which passes over memory compute them, is the model's own affair.
 ///
 /// # Validation
-/// `finds_the_minimum_of_a_curved_valley`, `no_component_moves_beyond_the_cap`
+/// `finds_the_minimum_of_a_curved_valley`, `a_constant_force_is_free_fall_in_growing_steps`, `an_uphill_step_is_half_undone`
 ///
 /// # References
 /// `bitzek2006`, `guenole2020`
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Fire {
     dt: f64,
-    dt_max: f64,
-    cap: f64,
-    max_steps: u64,
+    mixing: f64,
+    n_downhill: u32,
+    n_steps: u64,
+}
+
+/// Sums over all unknowns at the present positions, for [`Fire::step`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FireSums {
+    /// F · F; positive.
+    pub force_squared: f64,
+    /// F · v.
+    pub power: f64,
+    /// v · v.
+    pub speed_squared: f64,
+}
+
+/// One step of [`Fire`], v' being the velocity after it.
+///
+/// ```math
+/// v' = a_v v + a_F F, \qquad x' = x + b\,v + \Delta t\,v'
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FireStep {
+    /// b: 0, or a negative time that takes half of an uphill step back.
+    pub back: f64,
+    /// a_v.
+    pub on_velocity: f64,
+    /// a_F.
+    pub on_force: f64,
+    /// Δt.
+    pub forth: f64,
 }
 
 impl Fire {
-    /// Relaxation with first time step `dt` (about a tenth of the shortest period; it grows tenfold at most) and no component
-    /// moving by more than `cap` in a step.
+    /// A relaxation that begins from rest, whose longest time step will be `longest`.
     ///
-    /// # Errors
-    /// [`InvalidValue`] when an argument is not a positive finite number.
-    pub fn new(dt: f64, cap: f64) -> Result<Self, InvalidValue> {
-        positive("dt", dt)?;
-        Ok(Self {
-            dt,
-            dt_max: 10.0 * dt,
-            cap: positive("cap", cap)?,
-            max_steps: 100_000,
-        })
-    }
-
-    /// With a time step that grows to at most `ratio` (1 to 1000) times the first.
-    ///
-    /// # Errors
-    /// [`InvalidValue`] outside that range.
-    pub fn with_max_growth(mut self, ratio: f64) -> Result<Self, InvalidValue> {
-        self.dt_max = self.dt * in_range("ratio", ratio, 1.0, 1000.0)?;
-        Ok(self)
-    }
-
-    /// With at most `max_steps` steps (100 000 by default).
-    pub fn with_max_steps(mut self, max_steps: u64) -> Self {
-        self.max_steps = max_steps;
-        self
-    }
-
-    /// Moves `positions` downhill along `force` until `converged` says so.
-    ///
-    /// `force` writes the force at the given positions; `converged` is asked after each evaluation.
-    pub fn relax(
-        &self,
-        positions: &mut [f64],
-        force: &mut ForceFn<'_>,
-        converged: &mut dyn FnMut(&Relaxed<'_>) -> bool,
-    ) -> Relaxation {
-        let n = positions.len();
-        let (mut velocity, mut pull) = (vec![0.0; n], vec![0.0; n]);
-        let (mut dt, mut mixing) = (self.dt, MIXING_START);
-        let (mut n_downhill, mut n_uphill, mut step) = (0_u64, 0_u64, 0_u64);
-        let mut largest_force = 0.0;
-        let end = loop {
-            if let Err(why) = force(positions, &mut pull) {
-                break RelaxationEnd::Refused(why);
-            }
-            largest_force = super::max_norm(&pull);
-            if !largest_force.is_finite() {
-                break RelaxationEnd::Refused(Rejection::NotFinite { what: "force" });
-            }
-            if converged(&Relaxed {
-                step,
-                positions,
-                force: &pull,
-                largest_force,
-            }) {
-                break RelaxationEnd::Converged;
-            }
-            if step >= self.max_steps {
-                break RelaxationEnd::StepLimit;
-            }
-            step += 1;
-
-            let power: f64 = pull.iter().zip(&velocity).map(|(f, v)| f * v).sum();
-            if power > 0.0 {
-                n_downhill += 1;
-                n_uphill = 0;
-                if n_downhill > DELAY {
-                    dt = (dt * GROWTH).min(self.dt_max);
-                    mixing *= MIXING_SHRINK;
-                }
-            } else {
-                n_downhill = 0;
-                n_uphill += 1;
-                if n_uphill > MAX_UPHILL {
-                    break RelaxationEnd::Uphill;
-                }
-                // The first steps start from rest: no reason to slow down yet.
-                if step > DELAY {
-                    dt = (dt * SHRINK).max(SLOWEST * self.dt);
-                    mixing = MIXING_START;
-                }
-                let back = self.capped(dt, &velocity) * 0.5;
-                for (x, v) in positions.iter_mut().zip(&mut velocity) {
-                    *x -= back * *v;
-                    *v = 0.0;
-                }
-            }
-            for (v, f) in velocity.iter_mut().zip(&pull) {
-                *v += dt * f;
-            }
-            let pull_norm = norm(&pull);
-            if pull_norm > 0.0 {
-                let along = mixing * norm(&velocity) / pull_norm;
-                for (v, f) in velocity.iter_mut().zip(&pull) {
-                    *v = (1.0 - mixing) * *v + along * f;
-                }
-            }
-            let forth = self.capped(dt, &velocity);
-            for (x, v) in positions.iter_mut().zip(&velocity) {
-                *x += forth * v;
-            }
-        };
-        Relaxation {
-            end,
-            n_steps: step,
-            largest_force,
+    /// The scheme is stable below 2/ω, ω being the highest frequency of the unknowns.
+    pub fn at_rest(longest: f64) -> Self {
+        Self {
+            dt: FIRST * longest,
+            mixing: MIXING_START,
+            n_downhill: 0,
+            n_steps: 0,
         }
     }
 
-    /// The time step, or less where the fastest component would pass the cap.
-    fn capped(&self, dt: f64, velocity: &[f64]) -> f64 {
-        let fastest = super::max_norm(velocity);
-        if dt * fastest > self.cap {
-            self.cap / fastest
-        } else {
-            dt
+    /// The next step, with time steps of at most `longest`.
+    pub fn step(&mut self, longest: f64, sums: FireSums) -> FireStep {
+        let FireSums {
+            force_squared,
+            power,
+            speed_squared,
+        } = sums;
+        self.n_steps += 1;
+        // Positions go back before the velocity is stopped.
+        let (mut back, mut keep) = (0.0, 1.0);
+        if power > 0.0 {
+            self.n_downhill += 1;
+            if self.n_downhill > DELAY {
+                self.dt = (self.dt * GROWTH).min(longest);
+                self.mixing *= MIXING_SHRINK;
+            }
+        } else if self.n_steps > 1 {
+            back = -0.5 * self.dt;
+            keep = 0.0;
+            self.n_downhill = 0;
+            self.dt = (self.dt * SHRINK).max(SHORTEST * longest);
+            self.mixing = MIXING_START;
+        }
+        let (dt, a) = (self.dt, self.mixing);
+        // |v + dt F|, v being stopped or not.
+        let after = keep * (speed_squared + 2.0 * dt * power) + dt * dt * force_squared;
+        let speed = after.max(0.0).sqrt();
+        FireStep {
+            back,
+            on_velocity: (1.0 - a) * keep,
+            on_force: (1.0 - a) * dt + a * speed / force_squared.sqrt(),
+            forth: dt,
         }
     }
-}
 
-fn norm(vector: &[f64]) -> f64 {
-    vector.iter().map(|x| x * x).sum::<f64>().sqrt()
+    /// Steps taken.
+    pub fn n_steps(&self) -> u64 {
+        self.n_steps
+    }
+
+    /// Whether a relaxation can go on with it: one read from a file should be asked.
+    pub fn is_sound(&self) -> bool {
+        self.dt.is_finite()
+            && self.dt > 0.0
+            && (0.0..=1.0).contains(&self.mixing)
+            && self.n_downhill < u32::MAX / 2
+            && self.n_steps < MOST_COUNTED
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// Force of Rosenbrock's function.
-    fn valley(x: &[f64], force: &mut [f64]) -> Result<(), Rejection> {
-        let bend = x[1] - x[0] * x[0];
-        force[0] = 2.0 * (1.0 - x[0]) + 400.0 * x[0] * bend;
-        force[1] = -200.0 * bend;
-        Ok(())
+    fn dot(a: &[f64], b: &[f64]) -> f64 {
+        a.iter().zip(b).map(|(x, y)| x * y).sum()
     }
 
+    /// Moves `x` until the largest force is below `tolerance` or so many steps are taken; gives the number of steps.
+    fn relax(
+        x: &mut [f64],
+        longest: f64,
+        tolerance: f64,
+        most: u64,
+        force: impl Fn(&[f64], &mut [f64]),
+    ) -> u64 {
+        let (mut v, mut f) = (vec![0.0; x.len()], vec![0.0; x.len()]);
+        let mut fire = Fire::at_rest(longest);
+        loop {
+            force(x, &mut f);
+            if crate::max_norm(&f) < tolerance || fire.n_steps() == most {
+                return fire.n_steps();
+            }
+            let step = fire.step(
+                longest,
+                FireSums {
+                    force_squared: dot(&f, &f),
+                    power: dot(&f, &v),
+                    speed_squared: dot(&v, &v),
+                },
+            );
+            for ((x, v), f) in x.iter_mut().zip(&mut v).zip(&f) {
+                let next = step.on_velocity * *v + step.on_force * f;
+                *x += step.back * *v + step.forth * next;
+                *v = next;
+            }
+        }
+    }
+
+    /// Rosenbrock's function.
     #[test]
     fn finds_the_minimum_of_a_curved_valley() {
         let mut x = [-1.2, 1.0];
-        let fire = Fire::new(2e-3, 0.1).unwrap();
-        let done = fire.relax(&mut x, &mut valley, &mut |r| r.largest_force < 1e-9);
-        assert_eq!(done.end, RelaxationEnd::Converged);
+        let n = relax(&mut x, 0.02, 1e-9, 20_000, |x, force| {
+            let bend = x[1] - x[0] * x[0];
+            force[0] = 2.0 * (1.0 - x[0]) + 400.0 * x[0] * bend;
+            force[1] = -200.0 * bend;
+        });
         assert!(
             (x[0] - 1.0).abs() < 1e-8 && (x[1] - 1.0).abs() < 1e-8,
-            "{x:?} after {}",
-            done.n_steps
+            "{x:?} after {n}"
         );
-        assert!(done.n_steps < 20_000, "{}", done.n_steps);
+        assert!(n < 2000, "{n}");
     }
 
-    #[test]
-    fn no_component_moves_beyond_the_cap() {
-        let mut x = [50.0, -30.0];
-        let mut last = x;
-        let mut largest: f64 = 0.0;
-        let mut spring = |x: &[f64], f: &mut [f64]| {
-            f[0] = -1e6 * x[0];
-            f[1] = -x[1];
-            Ok(())
-        };
-        let fire = Fire::new(1e-4, 0.25).unwrap().with_max_steps(500);
-        let done = fire.relax(&mut x, &mut spring, &mut |r| {
-            largest = largest
-                .max((r.positions[0] - last[0]).abs())
-                .max((r.positions[1] - last[1]).abs());
-            last = [r.positions[0], r.positions[1]];
-            false
-        });
-        assert_eq!((done.end, done.n_steps), (RelaxationEnd::StepLimit, 500));
-        // A half step back and a step forth may add up.
-        assert!(largest > 0.2 && largest <= 0.375, "{largest}");
-    }
-
-    #[test]
-    fn troubles_are_values() {
-        let fire = Fire::new(0.1, 0.1).unwrap();
-        let broken = fire.relax(
-            &mut [1.0],
-            &mut |_, f| {
-                f[0] = f64::NAN;
-                Ok(())
-            },
-            &mut |_| false,
-        );
-        assert_eq!(
-            broken.end,
-            RelaxationEnd::Refused(Rejection::NotFinite { what: "force" })
-        );
-        let refusal = Rejection::Domain { what: "planted" };
-        let refused = fire.relax(&mut [1.0], &mut |_, _| Err(refusal.clone()), &mut |_| false);
-        assert_eq!(refused.end, RelaxationEnd::Refused(refusal));
-        let empty = fire.relax(&mut [], &mut |_, _| Ok(()), &mut |r| r.largest_force == 0.0);
-        assert_eq!((empty.end, empty.n_steps), (RelaxationEnd::Converged, 0));
-        // A force that flips its sign at each call is no gradient.
-        let mut sign = 1.0;
-        let flipping = fire.relax(
-            &mut [1.0],
-            &mut |_, f| {
-                sign = -sign;
-                f[0] = sign;
-                Ok(())
-            },
-            &mut |_| false,
-        );
-        assert_eq!(flipping.end, RelaxationEnd::Uphill);
-        assert!(Fire::new(0.0, 1.0).is_err() && Fire::new(1.0, f64::NAN).is_err());
-    }
-
-    /// A pull that never turns leaves free fall, v ← v + F dt and x ← x + v dt, whose steps grow by 1.1 from the 22nd on.
+    /// A pull that never turns leaves free fall, v ← v + F dt and x ← x + v dt, whose steps grow by 1.1 from the 7th on.
     #[test]
     fn a_constant_force_is_free_fall_in_growing_steps() {
-        let (first, force) = (1e-3, [3.0, 4.0]);
-        let (mut dt, mut v, mut fallen) = (first, 0.0, 0.0);
+        let (longest, force) = (1e-2, [3.0, 4.0]);
+        let (mut dt, mut v, mut fallen) = (0.3 * longest, 0.0, 0.0);
         for step in 1..=60 {
-            if step > 21 {
-                dt = f64::min(1.1 * dt, 10.0 * first);
+            if step > 6 {
+                dt = f64::min(1.1 * dt, longest);
             }
             v += dt;
             fallen += dt * v;
         }
         let mut x = [0.0, 0.0];
-        let mut pull = |_: &[f64], f: &mut [f64]| {
-            f.copy_from_slice(&force);
-            Ok(())
-        };
-        let fire = Fire::new(first, 1e3).unwrap().with_max_steps(60);
-        fire.relax(&mut x, &mut pull, &mut |_| false);
+        relax(&mut x, longest, 0.0, 60, |_, f| f.copy_from_slice(&force));
         for (x, f) in x.iter().zip(force) {
             assert!(
                 (x / (f * fallen) - 1.0).abs() < 1e-12,
@@ -315,5 +204,48 @@ mod tests {
                 f * fallen
             );
         }
+    }
+
+    /// Uphill, half of the last step is undone, the clock runs at half its pace, and what remains is a fall from rest, v' = F dt.
+    #[test]
+    fn an_uphill_step_is_half_undone() {
+        let sums = |power: f64| FireSums {
+            force_squared: 4.0,
+            power,
+            speed_squared: 9.0,
+        };
+        let mut fire = Fire::at_rest(1.0);
+        let first = fire.step(1.0, sums(0.0));
+        assert_eq!((first.back, first.forth), (0.0, 0.3), "it began from rest");
+        let second = fire.step(1.0, sums(-1.0));
+        assert_eq!((second.back, second.forth), (-0.15, 0.15));
+        assert_eq!(second.on_velocity, 0.0);
+        assert!((second.on_force - 0.15).abs() < 1e-15);
+        // However long it goes uphill, the clock does not stop.
+        for _ in 0..20 {
+            fire.step(1.0, sums(-1.0));
+        }
+        assert_eq!(fire.step(1.0, sums(-1.0)).forth, 0.02);
+    }
+
+    #[test]
+    fn broken_clocks_are_found() {
+        let fire = Fire::at_rest(0.1);
+        assert!(fire.is_sound() && !Fire::at_rest(0.0).is_sound());
+        for bad in [f64::NAN, f64::INFINITY, -1.0] {
+            assert!(
+                !Fire { dt: bad, ..fire }.is_sound()
+                    && !Fire {
+                        mixing: bad,
+                        ..fire
+                    }
+                    .is_sound()
+            );
+        }
+        let endless = Fire {
+            n_steps: u64::MAX,
+            ..fire
+        };
+        assert!(!endless.is_sound());
     }
 }

@@ -3,9 +3,10 @@
 use serde::{Deserialize, Serialize};
 
 use super::Simulation;
-use crate::control::{RejectionCounts, StepControl};
+use crate::control::StepControl;
 use crate::hooks::MOST_COUNTED;
 use crate::integrate::{Model, Stepper, StepperMemory};
+use crate::stepping::TimeStepping;
 
 /// Time, step control and the integrator's own memory, between two steps.
 ///
@@ -13,27 +14,20 @@ use crate::integrate::{Model, Stepper, StepperMemory};
 /// with this, takes the same steps as the one that was stopped.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SimulationMemory {
-    pub(super) time: f64,
-    pub(super) last_dt: f64,
-    pub(super) n_steps: u64,
-    pub(super) n_trials: u64,
-    pub(super) rejections: RejectionCounts,
-    pub(super) control: StepControl,
+    pub(super) steps: TimeStepping,
     pub(super) stepper: StepperMemory,
 }
 
 impl SimulationMemory {
     /// Time reached.
     pub fn time(&self) -> f64 {
-        self.time
+        self.steps.time()
     }
 
     /// What does not fit a simulation of `n_dof` numbers that begins with `control` and is followed until `until`.
     pub fn flaw(&self, control: &StepControl, until: f64, n_dof: usize) -> Option<&'static str> {
         let n = &self.stepper.counters;
         let counts = [
-            self.n_steps,
-            self.n_trials,
             n.n_rate_evaluations,
             n.n_factorisations,
             n.n_solves,
@@ -46,15 +40,11 @@ impl SimulationMemory {
                 .stepper
                 .radius
                 .is_none_or(|r| r.is_finite() && r >= 0.0);
-        if !(0.0..=until).contains(&self.time) || !self.last_dt.is_finite() {
-            Some("its time is none of this run")
-        } else if !control.leads_to(&self.control) {
-            Some("the step control is one of another run")
+        if let Some(flaw) = self.steps.flaw(control, until) {
+            Some(flaw)
         } else if !is_sound {
             Some("the integrator's memory is one of another system")
-        } else if counts.iter().any(|n| *n >= MOST_COUNTED)
-            || self.rejections.iter().any(|(_, n)| n >= MOST_COUNTED)
-        {
+        } else if counts.iter().any(|n| *n >= MOST_COUNTED) {
             Some("a counter is out of range")
         } else {
             None
@@ -66,12 +56,7 @@ impl<M: Model, S: Stepper<M>> Simulation<M, S> {
     /// What this simulation remembers beside model and state.
     pub fn memory(&self) -> SimulationMemory {
         SimulationMemory {
-            time: self.time,
-            last_dt: self.last_dt,
-            n_steps: self.n_steps,
-            n_trials: self.n_trials,
-            rejections: self.rejections.clone(),
-            control: self.control.clone(),
+            steps: self.steps.clone(),
             stepper: self.stepper.memory(),
         }
     }
@@ -81,12 +66,7 @@ impl<M: Model, S: Stepper<M>> Simulation<M, S> {
     /// # Validation
     /// `a_resumed_simulation_takes_the_same_steps`
     pub fn resumed(mut self, memory: SimulationMemory) -> Self {
-        self.time = memory.time;
-        self.last_dt = memory.last_dt;
-        self.n_steps = memory.n_steps;
-        self.n_trials = memory.n_trials;
-        self.rejections = memory.rejections;
-        self.control = memory.control;
+        self.steps = memory.steps;
         self.stepper.recall(memory.stepper, self.model.n_dof());
         self
     }

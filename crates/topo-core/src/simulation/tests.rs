@@ -159,25 +159,6 @@ fn every_way_to_stop() {
     assert_eq!(*last, Rejection::Domain { what: "below" });
     assert!(run.state()[0] >= 0.7 && run.rejections().count("domain") > 10);
 
-    let mut run = simulation(Decay::default(), 1e-3);
-    *run.control_mut() = run.control().clone().with_max_trials(7);
-    assert_eq!(
-        run.run(1e9, &mut [], &mut never),
-        StopReason::StepLimit { n: 7 }
-    );
-    assert_eq!(run.n_steps() + run.rejections().total(), 7);
-
-    let interrupt = Interrupt::new();
-    let mut run = simulation(Decay::default(), 1e-3).with_interrupt(interrupt.clone());
-    let mut ask = |s: &Sample<'_, Vec<f64>>| {
-        if s.step == 3 {
-            interrupt.request();
-        }
-        None
-    };
-    assert_eq!(run.run(1e9, &mut [], &mut ask), StopReason::Interrupted);
-    assert_eq!(run.n_steps(), 3);
-
     let mut run = simulation(
         Decay {
             fatal_after: Some(0.9),
@@ -204,9 +185,31 @@ fn every_way_to_stop() {
 }
 
 #[test]
+fn limits_and_interrupts_stop_a_run() {
+    let mut run = simulation(Decay::default(), 1e-3);
+    *run.control_mut() = run.control().clone().with_max_trials(7);
+    assert_eq!(
+        run.run(1e9, &mut [], &mut never),
+        StopReason::StepLimit { n: 7 }
+    );
+    assert_eq!(run.n_steps() + run.rejections().total(), 7);
+
+    let interrupt = Interrupt::new();
+    let mut run = simulation(Decay::default(), 1e-3).with_interrupt(interrupt.clone());
+    let mut ask = |s: &Sample<'_, Vec<f64>>| {
+        if s.step == 3 {
+            interrupt.request();
+        }
+        None
+    };
+    assert_eq!(run.run(1e9, &mut [], &mut ask), StopReason::Interrupted);
+    assert_eq!(run.n_steps(), 3);
+}
+
+#[test]
 fn a_time_too_large_to_grow_ends_the_run() {
     let mut run = simulation(Decay::default(), 1e-3);
-    run.time = 1e30;
+    run.steps.time = 1e30;
     assert_eq!(run.run(2e30, &mut [], &mut never).name(), "step-too-small");
 }
 
@@ -218,7 +221,7 @@ fn a_resumed_simulation_takes_the_same_steps() {
         whole.run(3.0, &mut [], &mut never);
         for n in [0, 1, 7, 20] {
             let mut part = fresh.clone();
-            while part.n_steps < n {
+            while part.n_steps() < n {
                 assert_eq!(part.advance(3.0, &mut [], &mut never), None);
             }
             let bytes = serde_json::to_string(&part.memory()).unwrap();
@@ -261,17 +264,20 @@ fn what_does_not_fit_a_simulation_is_named() {
     };
     assert_eq!(flaw(|_| {}), None);
     for (change, word) in [
-        ((|m| m.time = 4.0) as fn(&mut SimulationMemory), "time"),
-        (|m| m.time = f64::NAN, "time"),
-        (|m| m.last_dt = f64::INFINITY, "time"),
         (
-            |m| m.control = StepControl::new(1e-2, 1.0).unwrap(),
+            (|m| m.steps.time = 4.0) as fn(&mut SimulationMemory),
+            "time",
+        ),
+        (|m| m.steps.time = f64::NAN, "time"),
+        (|m| m.steps.last_dt = f64::INFINITY, "time"),
+        (
+            |m| m.steps.control = StepControl::new(1e-2, 1.0).unwrap(),
             "control",
         ),
         (|m| m.stepper.rate = Some(vec![0.0; 2]), "integrator"),
         (|m| m.stepper.rate = Some(vec![f64::NAN]), "integrator"),
         (|m| m.stepper.radius = Some(-1.0), "integrator"),
-        (|m| m.n_trials = u64::MAX, "counter"),
+        (|m| m.steps.n_trials = u64::MAX, "counter"),
         (|m| m.stepper.counters.n_solves = u64::MAX, "counter"),
     ] {
         let found = flaw(change);

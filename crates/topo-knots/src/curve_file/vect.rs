@@ -47,6 +47,57 @@ impl<'a, I: Iterator<Item = (usize, &'a str)>> Words<'a, I> {
     }
 }
 
+/// What the head of a file announces.
+struct Counts {
+    line: usize,
+    n_vertices: u64,
+    n_colours: u64,
+    /// Vertices of each component, negative where it is closed.
+    sizes: Vec<i64>,
+}
+
+impl Counts {
+    fn read<'a>(
+        words: &mut Words<'a, impl Iterator<Item = (usize, &'a str)>>,
+    ) -> Result<Self, KnotError> {
+        let path = words.path;
+        let (line, word) = words.next("VECT")?;
+        if word != "VECT" {
+            let problem = format!("the first word must be VECT, not {}", quoted(word));
+            return Err(fault_at(path, line, &problem));
+        }
+        let n_components = words.count("the number of components")?;
+        let line = words.last_line;
+        let n_vertices = words.count("the number of vertices")?;
+        let n_colours = words.count("the number of colours")?;
+        // A count beyond the text is an error below, not a reason to reserve memory.
+        let sizes = (0..n_components)
+            .map(|_| words.integer("the size of a component"))
+            .collect::<Result<Vec<i64>, _>>()?;
+        let colours = (0..n_components)
+            .map(|_| words.count("the number of colours of a component"))
+            .collect::<Result<Vec<u64>, _>>()?;
+        let agree = |what: &str, sum: u128, announced: u64| {
+            let problem = format!(
+                "the components have {sum} {what} together, line {line} announces {announced}; correct the counts"
+            );
+            (sum == u128::from(announced))
+                .then_some(())
+                .ok_or_else(|| fault(path, problem))
+        };
+        let all = sizes.iter().map(|n| u128::from(n.unsigned_abs())).sum();
+        agree("vertices", all, n_vertices)?;
+        let all = colours.iter().map(|n| u128::from(*n)).sum();
+        agree("colours", all, n_colours)?;
+        Ok(Self {
+            line,
+            n_vertices,
+            n_colours,
+            sizes,
+        })
+    }
+}
+
 /// The components of a file: counts, sizes, numbers of colours, vertices, colours, and nothing beyond.
 pub(super) fn vect(path: &Path, text: &str) -> Result<Vec<CurveComponent>, KnotError> {
     let words = text::lines(text).flat_map(|(line, row)| {
@@ -59,40 +110,12 @@ pub(super) fn vect(path: &Path, text: &str) -> Result<Vec<CurveComponent>, KnotE
         words,
         last_line: 1,
     };
-    let (line, word) = words.next("VECT")?;
-    if word != "VECT" {
-        let problem = format!("the first word must be VECT, not {}", quoted(word));
-        return Err(fault_at(path, line, &problem));
-    }
-    let n_components = words.count("the number of components")?;
-    let counts_line = words.last_line;
-    let n_vertices = words.count("the number of vertices")?;
-    let n_colours = words.count("the number of colours")?;
-    // A count beyond the text is an error below, not a reason to reserve memory.
-    let sizes = (0..n_components)
-        .map(|_| words.integer("the size of a component"))
-        .collect::<Result<Vec<i64>, _>>()?;
-    let colours = (0..n_components)
-        .map(|_| words.count("the number of colours of a component"))
-        .collect::<Result<Vec<u64>, _>>()?;
-    let agree = |what: &str, sum: u128, announced: u64| {
-        let problem = format!(
-            "the components have {sum} {what} together, line {counts_line} announces {announced}; correct the counts"
-        );
-        (sum == u128::from(announced))
-            .then_some(())
-            .ok_or_else(|| fault(path, problem))
-    };
-    agree(
-        "vertices",
-        sizes.iter().map(|n| u128::from(n.unsigned_abs())).sum(),
+    let Counts {
+        line: counts_line,
         n_vertices,
-    )?;
-    agree(
-        "colours",
-        colours.iter().map(|n| u128::from(*n)).sum(),
         n_colours,
-    )?;
+        sizes,
+    } = Counts::read(&mut words)?;
     let mut components = Vec::new();
     for size in sizes {
         let mut vertices = Vec::new();

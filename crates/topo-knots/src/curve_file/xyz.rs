@@ -244,26 +244,27 @@ fn block<'a>(
                 end,
             ))
         }
-        (false, false) => {
-            let found = rows.iter().filter(|line| !line.is_break()).count();
-            let announced = lines[at].number;
-            if found < n {
-                let problem = format!(
-                    "{n} vertices are announced, {found} follow the title; correct the count or complete the file"
-                );
-                return Err(fault_at(path, announced, &problem));
-            }
-            let left = lines[end..]
-                .iter()
-                .find(|line| !is_comment(line) && !line.is_break());
-            let (number, text) = left.map_or((announced, ""), |line| (line.number, line.text));
-            let problem = format!(
-                "{} is left over: line {announced} announces {n} vertices and there are more; correct the count",
-                quoted(text)
-            );
-            Err(fault_at(path, number, &problem))
-        }
+        (false, false) => Err(miscounted(path, lines[at].number, n, &rows, &lines[end..])),
     }
+}
+
+/// Why `rows`, with `rest` behind them, are not the `n` that the line number `announced` announces.
+fn miscounted(path: &Path, announced: usize, n: usize, rows: &[Line], rest: &[Line]) -> KnotError {
+    let found = rows.iter().filter(|line| !line.is_break()).count();
+    if found < n {
+        let problem = format!(
+            "{n} vertices are announced, {found} follow the title; correct the count or complete the file"
+        );
+        return fault_at(path, announced, &problem);
+    }
+    let mut rest = rest.iter();
+    let left = rest.find(|line| !is_comment(line) && !line.is_break());
+    let (number, text) = left.map_or((announced, ""), |line| (line.number, line.text));
+    let problem = format!(
+        "{} is left over: line {announced} announces {n} vertices and there are more; correct the count",
+        quoted(text)
+    );
+    fault_at(path, number, &problem)
 }
 
 /// The next `n` rows from line `at` on, with the breaks among them, and the line after the last.

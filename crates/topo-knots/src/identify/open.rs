@@ -111,9 +111,12 @@ fn close(
     reducer: &mut Reducer,
     table: &KnotTable,
 ) -> Result<KnotType, KnotError> {
-    // Not as a closed chain: ends that coincide must both stay, the far point lies between them.
-    reducer.load(chain, false);
-    reducer.x.push(point);
+    // ends that coincide are closed already: the way to the far point and back would run through itself
+    let is_closed = chain.first() == chain.last();
+    reducer.load(chain, is_closed);
+    if !is_closed {
+        reducer.x.push(point);
+    }
     classify(reducer, table, Care::Name)
 }
 

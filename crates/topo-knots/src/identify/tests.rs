@@ -228,6 +228,30 @@ fn an_open_knot_is_dominated_by_its_type() {
     }
 }
 
+/// A knot that has just been cut, its ends in one point, is what it was in every closure; a circle too, of which reduction leaves an edge
+/// there and back.
+#[test]
+fn chains_whose_ends_coincide_are_closed() {
+    let table = KnotTable::builtin();
+    let circle = |k: usize| {
+        let angle = std::f64::consts::TAU * k as f64 / 60.0;
+        V::new(angle.cos(), angle.sin(), 1e-5 * (7.0 * angle).sin())
+    };
+    let mut knots = vec![("0_1", (0..60).map(circle).collect::<Vec<V>>())];
+    for name in ["3_1", "4_1", "7_4"] {
+        knots.push((name, braid(&table.get(name).expect("known").braid)));
+    }
+    for (name, chain) in knots {
+        for cut in [0, chain.len() / 3] {
+            let mut chain = chain.clone();
+            chain.rotate_left(cut);
+            chain.push(chain[0]);
+            let found = identify_open(&chain, 32, 0, &table).expect("a chain");
+            assert_eq!(found.distribution, [(name.to_owned(), 1.0)]);
+        }
+    }
+}
+
 #[test]
 fn common_reduction_changes_no_closure() {
     let table = KnotTable::builtin();

@@ -253,22 +253,32 @@ struct System {
     row_blocks: Vec<[u32; 10]>,
 }
 
-impl System {
-    fn new(n: usize, rows: &[Row]) -> Option<Self> {
-        let mut keys: Vec<u64> = Vec::with_capacity(3 * n + 10 * rows.len());
-        let key = |i: usize, j: usize| ((i.max(j) as u64) << 32) | i.min(j) as u64;
-        for i in 0..n {
-            keys.extend([key(i, i), key(i, (i + 1) % n), key(i, (i + 2) % n)]);
-        }
-        for row in rows {
-            for a in 0..row.n() {
-                for b in 0..=a {
-                    keys.push(key(row.vertices[a] as usize, row.vertices[b] as usize));
-                }
+/// A pair of vertices as one number, the larger in front.
+fn key(i: usize, j: usize) -> u64 {
+    ((i.max(j) as u64) << 32) | i.min(j) as u64
+}
+
+/// The pairs of vertices that share an entry of the matrix: neighbours, and those of each row; in order.
+fn coupled(n: usize, rows: &[Row]) -> Vec<u64> {
+    let mut keys: Vec<u64> = Vec::with_capacity(3 * n + 10 * rows.len());
+    for i in 0..n {
+        keys.extend([key(i, i), key(i, (i + 1) % n), key(i, (i + 2) % n)]);
+    }
+    for row in rows {
+        for a in 0..row.n() {
+            for b in 0..=a {
+                keys.push(key(row.vertices[a] as usize, row.vertices[b] as usize));
             }
         }
-        keys.sort_unstable();
-        keys.dedup();
+    }
+    keys.sort_unstable();
+    keys.dedup();
+    keys
+}
+
+impl System {
+    fn new(n: usize, rows: &[Row]) -> Option<Self> {
+        let keys = coupled(n, rows);
         let mut pattern = Vec::with_capacity(9 * keys.len());
         for k in &keys {
             let (i, j) = ((k >> 32) as u32, *k as u32);

@@ -1,5 +1,7 @@
 //! How long to search and how fine to tighten.
 
+use std::ops::RangeInclusive;
+
 use serde::{Deserialize, Serialize};
 
 use crate::KnotError;
@@ -84,73 +86,38 @@ impl TightenSettings {
     /// # Errors
     /// [`KnotError::Setting`] naming the setting, its value and its range.
     pub fn check(&self) -> Result<(), KnotError> {
-        let checks = [
-            (
-                "per_unit",
-                self.per_unit,
-                1.0,
-                64.0,
-                "expected 1 to 64 vertices per unit of ropelength",
-            ),
-            (
-                "search_vertices",
-                self.search_vertices as f64,
-                32.0,
-                4096.0,
-                "expected 32 to 4096",
-            ),
-            (
-                "n_variants",
-                self.n_variants as f64,
-                0.0,
-                1000.0,
-                "expected at most 1000",
-            ),
-            (
-                "n_inversions",
-                self.n_inversions as f64,
-                0.0,
-                1000.0,
-                "expected at most 1000",
-            ),
-            (
-                "n_kicks_a_start",
-                self.n_kicks_a_start as f64,
-                0.0,
-                1000.0,
-                "expected at most 1000",
-            ),
-            (
-                "n_kicks",
-                self.n_kicks as f64,
-                0.0,
-                10_000.0,
-                "expected at most 10000",
-            ),
-            (
-                "tolerance",
-                self.tolerance,
-                1e-9,
-                1e-2,
-                "expected 1e-9 to 1e-2",
-            ),
-            (
-                "max_steps",
-                self.max_steps as f64,
-                1.0,
-                100_000.0,
-                "expected 1 to 100000",
-            ),
-        ];
-        for (name, value, least, most, expected) in checks {
-            if !(least..=most).contains(&value) {
-                return Err(KnotError::Setting {
-                    name,
-                    value,
-                    expected,
-                });
-            }
-        }
+        let within = |name, value: f64, range: RangeInclusive<f64>, expected| {
+            let setting = KnotError::Setting {
+                name,
+                value,
+                expected,
+            };
+            range.contains(&value).then_some(()).ok_or(setting)
+        };
+        let count =
+            |name, value: usize, range, expected| within(name, value as f64, range, expected);
+        let per_unit = "expected 1 to 64 vertices per unit of ropelength";
+        within("per_unit", self.per_unit, 1.0..=64.0, per_unit)?;
+        let (vertices, few) = (self.search_vertices, 0.0..=1000.0);
+        count(
+            "search_vertices",
+            vertices,
+            32.0..=4096.0,
+            "expected 32 to 4096",
+        )?;
+        let at_most = "expected at most 1000";
+        count("n_variants", self.n_variants, few.clone(), at_most)?;
+        count("n_inversions", self.n_inversions, few.clone(), at_most)?;
+        count("n_kicks_a_start", self.n_kicks_a_start, few, at_most)?;
+        count("n_kicks", self.n_kicks, 0.0..=1e4, "expected at most 10000")?;
+        let tolerance = "expected 1e-9 to 1e-2";
+        within("tolerance", self.tolerance, 1e-9..=1e-2, tolerance)?;
+        count(
+            "max_steps",
+            self.max_steps,
+            1.0..=1e5,
+            "expected 1 to 100000",
+        )?;
         Ok(())
     }
 }

@@ -2,6 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use topo_analysis::write_table;
+
 use crate::LabError;
 use crate::cost::Estimate;
 use crate::progress::{Event, SweepSettings};
@@ -123,4 +125,16 @@ pub struct Checked {
     pub folder: PathBuf,
     /// Whether it was asked to stop before the end.
     pub is_interrupted: bool,
+}
+
+impl Checked {
+    /// Writes its errors beside the table of the results and says where.
+    ///
+    /// # Errors
+    /// A file that cannot be written.
+    pub fn write(&self, folder: &Path) -> Result<PathBuf, LabError> {
+        let path = folder.join("errors.csv");
+        write_table(&path, &self.errors)?;
+        Ok(path)
+    }
 }

@@ -161,6 +161,31 @@ pub(crate) fn exact_discharge(
     })
 }
 
+/// The row of a discharge and its reference; `seconds` are those of both.
+fn compared(
+    knot: String,
+    twist: f64,
+    found: &MeasuredDischarge,
+    reference: &MeasuredDischarge,
+    seconds: [f64; 2],
+) -> AccuracyRow {
+    let error = |a: Option<f64>, b: Option<f64>| a.zip(b).map(|(a, b)| 100.0 * (a / b - 1.0));
+    AccuracyRow {
+        knot,
+        twist,
+        cut: found.cut,
+        t50: found.t50,
+        t99: found.t99,
+        t50_reference: reference.t50,
+        t99_reference: reference.t99,
+        t50_error_percent: error(found.t50, reference.t50),
+        t99_error_percent: error(found.t99, reference.t99),
+        energy_ratio: found.energy / reference.energy,
+        cpu_seconds: seconds[0],
+        cpu_seconds_reference: seconds[1],
+    }
+}
+
 /// Compares the discharges of `scene` with those of [`reference_scene`] on the given knots and twists, cut at the same place, or with the
 /// exact one where that is known.
 ///
@@ -212,22 +237,8 @@ pub fn measure_accuracy(
                 expected: 0.0,
                 warnings: "",
             });
-            let error =
-                |a: Option<f64>, b: Option<f64>| a.zip(b).map(|(a, b)| 100.0 * (a / b - 1.0));
-            Ok(Some(AccuracyRow {
-                knot: name,
-                twist,
-                cut: coarse.cut,
-                t50: coarse.t50,
-                t99: coarse.t99,
-                t50_reference: reference.t50,
-                t99_reference: reference.t99,
-                t50_error_percent: error(coarse.t50, reference.t50),
-                t99_error_percent: error(coarse.t99, reference.t99),
-                energy_ratio: coarse.energy / reference.energy,
-                cpu_seconds,
-                cpu_seconds_reference,
-            }))
+            let seconds = [cpu_seconds, cpu_seconds_reference];
+            Ok(Some(compared(name, twist, &coarse, &reference, seconds)))
         })
         .collect::<Result<_, LabError>>()?;
     Ok(rows.into_iter().flatten().collect())

@@ -152,6 +152,7 @@ impl File {
             .map_err(|(key, text, remedy)| document.wrong(key, text, remedy))?;
         let standard = ElasticScene::published(asked.preset);
         let (accuracy, discharge) = (standard.accuracy, standard.discharge);
+        let run = self.discharge;
         let beside = path.parent().unwrap_or(Path::new("")).to_owned();
         Ok(ElasticScene {
             folder: folder_of(path)?,
@@ -167,21 +168,15 @@ impl File {
                 duration: self.charge.duration.unwrap_or(standard.charge.duration),
                 ..standard.charge
             },
-            cuts: self.discharge.cuts.unwrap_or(standard.cuts),
+            cuts: run.cuts.unwrap_or(standard.cuts),
             discharge: DischargeSettings {
-                until_released: self
-                    .discharge
-                    .until_released
-                    .unwrap_or(discharge.until_released),
-                longest: self.discharge.longest.unwrap_or(discharge.longest),
-                ends: self.discharge.ends,
+                until_released: run.until_released.unwrap_or(discharge.until_released),
+                longest: run.longest.unwrap_or(discharge.longest),
+                ends: run.ends,
                 ..discharge
             },
             timeline: TimelineSettings {
-                closures: self
-                    .discharge
-                    .closures
-                    .unwrap_or(standard.timeline.closures),
+                closures: run.closures.unwrap_or(standard.timeline.closures),
                 ..standard.timeline
             },
             accuracy: Accuracy {

@@ -1,6 +1,6 @@
 //! The shapes of one discharge at many times, for moving pictures.
 
-use nalgebra::Vector3;
+use topo_core::Vector3;
 use topo_core::{Interrupt, RunHooks};
 use topo_knots::KnotTable;
 use topo_rod::{CutSite, DischargeSettings};

@@ -27,6 +27,9 @@ pub(crate) fn fingerprint(scene: &ElasticScene, case: &ElasticCase, entry: &Knot
     if !scene.own_terms.is_empty() {
         all["own_terms"] = json!(scene.own_terms);
     }
+    if !scene.observables.is_empty() {
+        all["observables"] = json!(scene.observables);
+    }
     identity(&all)
 }
 

@@ -1,8 +1,8 @@
 //! A small smooth random perturbation of a start curve.
 
-use nalgebra::Vector3;
 use rand::{Rng, RngExt, SeedableRng};
 use rand_pcg::Pcg64;
+use topo_core::Vector3;
 use topo_core::{CurveError, Polyline};
 
 /// Longest and shortest wave of the perturbation: this many waves around the curve.

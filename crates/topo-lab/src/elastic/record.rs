@@ -5,6 +5,7 @@ use serde_json::json;
 use topo_rod::{ChargedRod, Guards, RodBattery, RodSample};
 
 use super::job::{CaseJob, FollowedCut};
+use super::observable::{Observable, further};
 use crate::LabError;
 use crate::folder::Outcome;
 use crate::sweep::{About, Place, value};
@@ -45,8 +46,8 @@ struct SnapshotVertex {
 }
 
 /// The open or closed rod at an output time.
-#[derive(Serialize)]
-struct SeriesRow<'a> {
+#[derive(Default, Serialize)]
+pub(super) struct SeriesRow<'a> {
     cut: Option<f64>,
     time: f64,
     energy: f64,
@@ -73,6 +74,7 @@ fn series_row<'a>(
     cut: Option<f64>,
     s: &RodSample,
     timeline: Option<(&'a Timeline, usize)>,
+    observables: &[Observable],
 ) -> SeriesRow<'a> {
     let typed = timeline.and_then(|(t, k)| t.at(k));
     SeriesRow {
@@ -83,7 +85,7 @@ fn series_row<'a>(
         twist_energy: s.stored.of("twist"),
         stretch: s.stored.of("stretch"),
         contact_energy: s.stored.of("contact"),
-        further: s.stored.further().collect(),
+        further: further(s, observables),
         dissipated_viscosity: s.dissipated[0],
         dissipated_twist: s.dissipated[1],
         dissipated_friction: s.dissipated[2],
@@ -117,18 +119,25 @@ fn snapshot_indices(samples: &[RodSample], start: f64) -> Vec<usize> {
 /// Writes the folder of a case; what is there of an earlier run is replaced.
 pub(super) fn write_case(made: &MadeCase<'_>, place: &Place<'_>) -> Result<(), LabError> {
     let MadeCase {
+        job,
         charged,
         runs,
         outcome,
         charge_seconds,
-        ..
     } = *made;
+    let observables = &job.scene.observables;
     let mut folder = place.open()?;
     folder.table("charged.csv", &charged_vertices(charged))?;
     let samples = &charged.record().samples;
-    let series: Vec<_> = samples.iter().map(|s| series_row(None, s, None)).collect();
+    let series: Vec<_> = samples
+        .iter()
+        .map(|s| series_row(None, s, None, observables))
+        .collect();
     folder.table("charge.csv", &series)?;
-    let series: Vec<_> = runs.iter().flat_map(run_series).collect();
+    let series: Vec<_> = runs
+        .iter()
+        .flat_map(|run| run_series(run, observables))
+        .collect();
     folder.table("series.csv", &series)?;
     let snapshots: Vec<_> = runs
         .iter()
@@ -162,10 +171,13 @@ fn charged_vertices(charged: &ChargedRod) -> Vec<ChargedVertex> {
         .collect()
 }
 
-fn run_series(run: &FollowedCut) -> impl Iterator<Item = SeriesRow<'_>> {
+fn run_series<'a>(
+    run: &'a FollowedCut,
+    observables: &'a [Observable],
+) -> impl Iterator<Item = SeriesRow<'a>> {
     let (discharge, timeline) = (&run.discharge, &run.timeline);
     let samples = discharge.record.samples.iter().enumerate();
-    samples.map(move |(k, s)| series_row(Some(discharge.at), s, Some((timeline, k))))
+    samples.map(move |(k, s)| series_row(Some(discharge.at), s, Some((timeline, k)), observables))
 }
 
 fn run_snapshots(battery: &RodBattery, run: &FollowedCut) -> Vec<SnapshotVertex> {

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use nalgebra::Vector3;
+use topo_core::Vector3;
 use topo_core::{CpuClock, Progress, StopReason};
 use topo_knots::identify;
 use topo_rod::{
@@ -13,6 +13,7 @@ use super::choices::{Cuts, NEAR_TIE};
 use super::identity::starts_from_two_images;
 use super::imperfection::perturbed;
 use super::job::{CaseJob, FollowedCut};
+use super::observable::further;
 use super::record::{MadeCase, write_case};
 use crate::LabError;
 use crate::folder::{Outcome, forget_checkpoints};
@@ -299,7 +300,7 @@ fn charged_row(job: &CaseJob<'_>, charged: &ChargedRod) -> SweepRow {
         row.bend = last.stored.of("bend");
         row.twist_energy = last.stored.of("twist");
         row.stretch = last.stored.of("stretch");
-        row.further = last.stored.further().collect();
+        row.further = further(last, &job.scene.observables);
         (row.writhe, row.total_twist) = (last.writhe, last.total_twist);
     }
     phase_warnings("charge", report, &mut row.warnings);

@@ -6,12 +6,13 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 use topo_knots::{KnotTable, TightenSettings};
 use topo_rod::energy::EnergyTerm;
-use topo_rod::{Accuracy, ChargeSettings, DischargeSettings, RodParameters, RodState};
+use topo_rod::{Accuracy, ChargeSettings, DischargeSettings, RodParameters, RodSample, RodState};
 
 use super::case::ElasticCase;
 use super::choices::Cuts;
 use super::defaults;
 use super::keys::{EDGES, ROD_KEYS};
+use super::observable::Observable;
 use super::own_term::OwnTerm;
 use crate::LabError;
 use crate::preset::Preset;
@@ -63,6 +64,9 @@ pub struct ElasticScene {
     /// Energy terms of the caller's own, which no file can say.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub own_terms: Vec<OwnTerm>,
+    /// Quantities of the caller's own, which no file can say.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub observables: Vec<Observable>,
 }
 
 /// A folder of knot files that a scene names.
@@ -136,6 +140,7 @@ impl ElasticScene {
             wish: None,
             fixed_cuts: None,
             own_terms: Vec::new(),
+            observables: Vec::new(),
         }
     }
 
@@ -235,6 +240,32 @@ impl ElasticScene {
     ) -> Self {
         self.own_terms.push(OwnTerm::new(label, make));
         self
+    }
+
+    /// The scene with a quantity of the caller's own, measured at every output time: a column `name` in `charge.csv` and `series.csv`, and
+    /// in `sweep.csv` that of the charged rod.
+    ///
+    /// The name tells finished cases apart: a quantity that is measured otherwise needs another one.
+    ///
+    /// # Errors
+    /// A name that is no column's, that a column of the tables has, or that is there twice.
+    ///
+    /// # Validation
+    /// `law_an_observable_from_outside_is_found_in_every_table`
+    pub fn with_observable(
+        mut self,
+        name: &str,
+        measure: impl Fn(&RodSample) -> f64 + Send + Sync + 'static,
+    ) -> Result<Self, LabError> {
+        let observable = Observable::new(name, measure)?;
+        if self.observables.contains(&observable) {
+            return Err(LabError::Observable {
+                name: name.to_owned(),
+                reason: "it is there already".to_owned(),
+            });
+        }
+        self.observables.push(observable);
+        Ok(self)
     }
 
     /// Where files with the scene's tables lie below an output folder.

@@ -1,8 +1,8 @@
 //! What is refused of a scene of colloids before anything runs.
 
-use topo_nematic::{
-    Anchoring, FlowSolver, NematicBattery, NematicError, Sides, StokesError, SwitchTarget,
-};
+use topo_nematic::flow::FlowSolver;
+use topo_nematic::stokes::StokesError;
+use topo_nematic::{Anchoring, NematicBattery, NematicError, Sides, SwitchTarget};
 
 use super::case::NematicCase;
 use super::scene::NematicScene;
@@ -215,6 +215,20 @@ pub(super) fn idle(scene: &NematicScene) -> Vec<(&'static str, &'static str)> {
         &["nematic.spacing"],
         "accuracy and budget pick the spacing: keep one of the two",
     );
+    idle.extend(idle_in_runs(scene));
+    idle
+}
+
+/// Keys of flow, switch, charge and field that change nothing in this scene.
+fn idle_in_runs(scene: &NematicScene) -> Vec<(&'static str, &'static str)> {
+    let nematic = &scene.nematic;
+    let swept = |key: &str| scene.axes.iter().any(|axis| axis.key().starts_with(key));
+    let mut idle = Vec::new();
+    let mut when = |is_idle: bool, keys: &[&'static str], reason: &'static str| {
+        if is_idle {
+            idle.extend(keys.iter().map(|key| (*key, reason)));
+        }
+    };
     let flow_only = ["material.viscosity", "material.flow_alignment"];
     when(scene.flow.is_none(), &flow_only, NO_FLOW);
     for key in flow_only {

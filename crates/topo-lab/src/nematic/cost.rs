@@ -3,7 +3,8 @@
 //! Processor seconds a million cells are those of R = 15, 20 and 25 at a spacing of 1.5 and of R = 6 to 10 at 0.5 to 2, their
 //! growth that from 8 000 to 6 million cells, without flow to 1.3 million.
 
-use topo_nematic::{FlowCoupling, NematicBattery, NematicParameters};
+use topo_nematic::flow::FlowCoupling;
+use topo_nematic::{NematicBattery, NematicParameters};
 
 use super::case::NematicCase;
 use super::scene::NematicScene;

@@ -4,7 +4,9 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 use topo_core::{load_checkpoint, parse_checkpoint, save_checkpoint};
-use topo_nematic::{FlowCoupling, NematicState, Tensor5};
+use topo_nematic::NematicState;
+use topo_nematic::flow::FlowCoupling;
+use topo_nematic::tensor::Tensor5;
 
 use crate::LabError;
 
@@ -26,7 +28,7 @@ pub struct FieldSnapshot {
     pub origin: [f64; 3],
     /// Whether each cell lies in the fluid.
     pub fluid: Vec<bool>,
-    /// Tensor of each cell, in the five components of [`topo_nematic::Tensor5`], component by component, to single precision.
+    /// Tensor of each cell, in the five components of [`topo_nematic::tensor::Tensor5`], component by component, to single precision.
     pub q: Vec<f32>,
     /// Velocity of each cell, component by component, to single precision; none without flow.
     pub velocity: Option<Vec<f32>>,

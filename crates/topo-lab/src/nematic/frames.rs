@@ -1,9 +1,10 @@
 //! Ring and central plane of one discharge at many times, for moving pictures.
 
 use topo_core::Interrupt;
+use topo_nematic::flow::FlowCoupling;
+use topo_nematic::record::NematicSample;
 use topo_nematic::{
-    DischargeSettings, FlowCoupling, NematicBattery, NematicSample, NematicState, RunHooks,
-    SurfacePattern, Threads,
+    DischargeSettings, NematicBattery, NematicState, Protocol, RunHooks, SurfacePattern, Threads,
 };
 
 use super::scene::NematicScene;
@@ -45,29 +46,23 @@ pub fn nematic_frames(
     let mut accuracy = scene.accuracy;
     accuracy.threads = Threads::All;
     let battery = NematicBattery::new(&nematic, &accuracy).map_err(refuse)?;
-    let charged = battery
-        .charge(&scene.charge, &mut RunHooks::new(interrupt))
-        .map_err(refuse)?;
-    let energy = charged.energy().total();
-    let mut frames = vec![frame(None, energy, charged.state(), None)];
-    if interrupt.is_requested() {
-        return Ok(frames);
-    }
-    let released = charged.switch(&scene.switch).map_err(refuse)?;
-    let settings = DischargeSettings {
-        flow: scene.flow,
-        outputs_per_decade: per_decade,
-        ..scene.discharge.clone()
+    let protocol = Protocol {
+        charge: scene.charge.clone(),
+        switch: scene.switch.clone(),
+        discharge: DischargeSettings {
+            flow: scene.flow,
+            outputs_per_decade: per_decade,
+            ..scene.discharge.clone()
+        },
     };
+    let mut frames = Vec::new();
     let mut see = |s: &NematicSample, state: &NematicState, flow: Option<&FlowCoupling>| {
         frames.push(frame(Some(s.time), s.energy.total(), state, flow));
     };
-    released
-        .discharge(
-            &settings,
-            &mut RunHooks::new(interrupt).with_samples(&mut see),
-        )
-        .map_err(refuse)?;
+    let mut hooks = RunHooks::new(interrupt).with_samples(&mut see);
+    let (charged, _) = battery.run(&protocol, &mut hooks).map_err(refuse)?;
+    let energy = charged.energy().total();
+    frames.insert(0, frame(None, energy, charged.state(), None));
     Ok(frames)
 }
 

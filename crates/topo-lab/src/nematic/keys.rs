@@ -1,6 +1,7 @@
 //! The keys of a colloid that may have several values, in the order in which cases run through them.
 
-use topo_nematic::{Anchoring, ExternalField, Plate, PlateDirector, Sides};
+use topo_nematic::anchoring::{Plate, PlateDirector};
+use topo_nematic::{Anchoring, ExternalField, Sides};
 
 use super::case::NematicCase;
 use crate::scene::{Access, AxisValue, SweptKey};

@@ -6,9 +6,10 @@ use std::f64::consts::{PI, TAU};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use topo_core::Interrupt;
+use topo_nematic::record::{ChargeStop, MinimumState};
 use topo_nematic::{
-    Boundary, ChargeSettings, ChargeStop, MinimumState, NematicAccuracy, NematicBattery,
-    NematicError, NematicParameters, RunHooks, SurfacePattern,
+    Boundary, ChargeSettings, NematicAccuracy, NematicBattery, NematicError, NematicParameters,
+    RunHooks, SurfacePattern,
 };
 
 use super::identity::RESULTS_VERSION;

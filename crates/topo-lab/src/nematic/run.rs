@@ -7,10 +7,11 @@ use topo_analysis::{
     DischargeTimes, NEMATIC_SHARES, NematicRow, NematicSample, Warnings, late_rate,
 };
 use topo_core::{Progress, StopReason, load_checkpoint, save_checkpoint};
+use topo_nematic::flow::FlowCoupling;
+use topo_nematic::record::{ChargeReport, FinalSource, FinalState, MinimumState};
 use topo_nematic::{
-    ChargeReport, ChargedNematic, Discharge, DischargeSettings, FinalSource, FinalState,
-    FlowCoupling, MinimumState, NematicAccuracy, NematicBattery, NematicError, NematicState,
-    RunHooks, SwitchedNematic, Threads,
+    ChargedNematic, Discharge, DischargeSettings, NematicAccuracy, NematicBattery, NematicError,
+    NematicState, RunHooks, SwitchedNematic, Threads,
 };
 
 use super::case::NematicCase;
@@ -119,18 +120,19 @@ impl CaseRun<'_> {
             FieldSnapshot::of(None, state, None, centre(state)).write(folder, 0)?;
         }
         let mut failed: Option<LabError> = None;
-        let mut see =
-            |s: &topo_nematic::NematicSample, state: &NematicState, flow: Option<&FlowCoupling>| {
-                let share = released
-                    .stored(end)
-                    .map_or(1.0, |stored| (s.energy.total() - end.energy) / stored);
-                if failed.is_none() && kept.see(s.time, share, state, flow) {
-                    let saved = self
-                        .keep_field(s.time, kept.n_kept, state, flow)
-                        .and_then(|()| Ok(save_checkpoint(&place, KEPT, &kept)?));
-                    failed = saved.err();
-                }
-            };
+        let mut see = |s: &topo_nematic::record::NematicSample,
+                       state: &NematicState,
+                       flow: Option<&FlowCoupling>| {
+            let share = released
+                .stored(end)
+                .map_or(1.0, |stored| (s.energy.total() - end.energy) / stored);
+            if failed.is_none() && kept.see(s.time, share, state, flow) {
+                let saved = self
+                    .keep_field(s.time, kept.n_kept, state, flow)
+                    .and_then(|()| Ok(save_checkpoint(&place, KEPT, &kept)?));
+                failed = saved.err();
+            }
+        };
         let mut tell = |p: &Progress| self.place.progressed(p);
         let mut hooks = RunHooks::new(&sweep.interrupt)
             .with_progress(&mut tell)
@@ -353,7 +355,7 @@ fn stability_warning(charge: &ChargeReport) -> Option<String> {
     }
 }
 
-fn sample(s: &topo_nematic::NematicSample) -> NematicSample {
+fn sample(s: &topo_nematic::record::NematicSample) -> NematicSample {
     NematicSample {
         time: s.time,
         energy: s.energy.total(),

@@ -1,9 +1,11 @@
 //! What is kept of the field at a few times: defect lines, and the vertical plane through the particle's centre.
 
 use serde::{Deserialize, Serialize};
-use topo_nematic::{
-    FlowCoupling, NematicState, defect_lines, is_near_particle, order_and_director, ring_line,
-};
+use topo_nematic::NematicState;
+use topo_nematic::defects::defect_lines;
+use topo_nematic::flow::FlowCoupling;
+use topo_nematic::ring::{is_near_particle, ring_line};
+use topo_nematic::tensor::order_and_director;
 
 use topo_analysis::{LinePoint, SlicePoint};
 
@@ -167,7 +169,8 @@ pub(super) fn centre(state: &NematicState) -> [f64; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use topo_nematic::{Faces, Grid, uniaxial};
+    use topo_nematic::tensor::uniaxial;
+    use topo_nematic::{Faces, Grid};
 
     #[test]
     fn only_a_closed_line_around_the_axis_is_a_ring() {

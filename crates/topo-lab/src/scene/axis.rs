@@ -3,7 +3,8 @@
 use std::fmt;
 
 use serde::Serialize;
-use topo_nematic::{Anchoring, Boundary, PlateDirector, SurfacePattern};
+use topo_nematic::anchoring::PlateDirector;
+use topo_nematic::{Anchoring, Boundary, SurfacePattern};
 use topo_rod::{FrictionRange, Reading};
 
 use super::document::{Document, Found};
@@ -269,6 +270,33 @@ fn repeated_setting(values: &[AxisValue]) -> Option<&AxisValue> {
 /// Most entries of a list of choices.
 const MOST_CHOICES: usize = 1000;
 
+/// `values` as whole numbers; those of a list as they are written, so that none is rounded.
+fn whole_numbers(
+    document: &Document<'_>,
+    key: &str,
+    found: &Found<'_>,
+    values: &[f64],
+) -> Result<Vec<u64>, LabError> {
+    let wrong =
+        |x: &dyn fmt::Display| document.wrong(key, x, "whole numbers, zero or above, are needed");
+    match found.parsed {
+        toml::Value::Array(list) => list
+            .iter()
+            .map(|v| {
+                let whole = v.as_integer().and_then(|n| u64::try_from(n).ok());
+                whole.ok_or_else(|| wrong(v))
+            })
+            .collect(),
+        _ => values
+            .iter()
+            .map(|x| match x.fract() == 0.0 && (0.0..9e15).contains(x) {
+                true => Ok(*x as u64),
+                false => Err(wrong(x)),
+            })
+            .collect(),
+    }
+}
+
 fn raw_axis<'a, C>(
     document: &Document<'_>,
     key: &'a SweptKey<C>,
@@ -307,26 +335,7 @@ fn raw_axis<'a, C>(
         let texts = values.iter().take(1).map(|x| format!("{x:?}")).collect();
         return raw(texts, values.into_iter().map(AxisValue::Number).collect());
     }
-    let wrong = |x: &dyn fmt::Display| {
-        document.wrong(key.key, x, "whole numbers, zero or above, are needed")
-    };
-    // whole numbers of a list as they are written, so that none is rounded
-    let whole: Vec<u64> = match found.parsed {
-        toml::Value::Array(list) => list
-            .iter()
-            .map(|v| {
-                let whole = v.as_integer().and_then(|n| u64::try_from(n).ok());
-                whole.ok_or_else(|| wrong(v))
-            })
-            .collect::<Result<_, _>>()?,
-        _ => values
-            .iter()
-            .map(|x| match x.fract() == 0.0 && (0.0..9e15).contains(x) {
-                true => Ok(*x as u64),
-                false => Err(wrong(x)),
-            })
-            .collect::<Result<_, _>>()?,
-    };
+    let whole = whole_numbers(document, key.key, found, &values)?;
     let texts = whole.iter().take(1).map(u64::to_string).collect();
     raw(texts, whole.into_iter().map(AxisValue::Whole).collect())
 }

@@ -1,8 +1,8 @@
 //! Extremes of the knot generator.
 
-use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
+use topo_core::Vector3;
 use topo_core::{Interrupt, Polyline};
 use topo_knots::{
     Invariants, KnotError, KnotTable, TightenSettings, closed_braid, identify, n_components,

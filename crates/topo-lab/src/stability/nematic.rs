@@ -3,10 +3,11 @@
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use topo_core::Interrupt;
+use topo_nematic::tensor::uniaxial;
 use topo_nematic::{
     Anchoring, ChargeSettings, ChargedNematic, DischargeSettings, FlowParameters, Material,
     NematicAccuracy, NematicBattery, NematicError, NematicParameters, NematicState, RunHooks,
-    SurfacePattern, SwitchSettings, SwitchTarget, uniaxial,
+    SurfacePattern, SwitchSettings, SwitchTarget,
 };
 
 use super::cell::{Cell, Verdict};

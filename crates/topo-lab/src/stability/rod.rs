@@ -1,10 +1,9 @@
 //! Extremes of the rod.
 
-use nalgebra::Vector3;
+use topo_core::Vector3;
 use topo_core::{Interrupt, Polyline, RunHooks};
 use topo_rod::{
-    Accuracy, ChargeSettings, ContactParameters, CutSite, DischargeSettings, FrictionParameters,
-    Guards, RodBattery, RodParameters,
+    Accuracy, ContactParameters, FrictionParameters, Guards, Protocol, RodBattery, RodParameters,
 };
 
 use super::cell::{Cell, Verdict};
@@ -78,13 +77,13 @@ impl Case {
             tolerance: self.tolerance,
             ..Default::default()
         };
-        let mut charge = ChargeSettings::default();
-        let mut discharge = DischargeSettings::default();
+        let mut protocol = Protocol::default();
         if preset == Preset::Draft {
             accuracy.max_steps = DRAFT_STEPS;
-            discharge.until_released = 0.99;
+            protocol.discharge.until_released = 0.99;
             if self.n_edges > LARGE {
-                (charge.duration, discharge.longest) = (LARGE_DURATION, LARGE_DURATION);
+                protocol.charge.duration = LARGE_DURATION;
+                protocol.discharge.longest = LARGE_DURATION;
             }
         }
         let curve = if self.is_eight {
@@ -94,19 +93,14 @@ impl Case {
         };
         let run = || {
             let battery = RodBattery::new(&parameters, &accuracy, Guards::default(), &curve)?;
-            let charged = battery.charge(&charge, &mut RunHooks::new(interrupt))?;
+            let (charged, run) = battery.run(&protocol, &mut RunHooks::new(interrupt))?;
             let record = charged.record();
             let mut found = violations(&record.curve, NOTHING);
             found += u32::from(record.report.own.link_drift.is_some_and(|d| d > CROSSING));
-            if !record.report.stop.is_success() {
-                return Ok(Verdict::stopped(
-                    format!("charge: {}", record.report.stop),
-                    found,
-                ));
-            }
-            let run = charged
-                .cut(CutSite::MaximumEnergyDensity)?
-                .discharge(&discharge, &mut RunHooks::new(interrupt))?;
+            let Some(run) = run else {
+                let reason = format!("charge: {}", record.report.stop);
+                return Ok(Verdict::stopped(reason, found));
+            };
             found += violations(&run.record.curve, NOTHING);
             let stop = &run.record.report.stop;
             Ok(if stop.is_success() {

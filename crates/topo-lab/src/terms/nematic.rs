@@ -1,10 +1,10 @@
 //! Terms of a colloid: flow, second elastic constant, external field, second precision.
 
 use topo_core::{CpuClock, Interrupt};
+use topo_nematic::record::PhaseReport;
 use topo_nematic::{
     ChargeSettings, DischargeSettings, ExternalField, FlowParameters, Material, NematicAccuracy,
-    NematicBattery, NematicParameters, PhaseReport, Precision, RunHooks, SurfacePattern,
-    SwitchSettings,
+    NematicBattery, NematicParameters, Precision, Protocol, RunHooks, SurfacePattern,
 };
 
 use super::term::{Taken, Term};
@@ -18,9 +18,9 @@ struct Colloid {
     discharge: DischargeSettings,
 }
 
-pub(super) fn terms(preset: Preset) -> Vec<Term> {
-    let radius = if preset == Preset::Draft { 7.5 } else { 15.0 };
-    let plain = Colloid {
+/// A colloid without further terms.
+fn plain(radius: f64) -> Colloid {
+    Colloid {
         parameters: NematicParameters {
             radius,
             spacing: 1.5,
@@ -32,7 +32,12 @@ pub(super) fn terms(preset: Preset) -> Vec<Term> {
             until_released: 0.99,
             ..DischargeSettings::default()
         },
-    };
+    }
+}
+
+pub(super) fn terms(preset: Preset) -> Vec<Term> {
+    let radius = if preset == Preset::Draft { 7.5 } else { 15.0 };
+    let plain = plain(radius);
     let shape = format!("R = {radius}, h = 1.5, q = 3");
     let mut terms = Vec::new();
     let mut add = |name: &'static str,
@@ -54,10 +59,8 @@ pub(super) fn terms(preset: Preset) -> Vec<Term> {
         "every step",
         |c| c.discharge.flow = Some(FlowParameters::default()),
         |r| {
-            (
-                r.own.bytes.flow,
-                r.own.flow.map_or(0, |f| f.counters.n_updates),
-            )
+            let n_updates = r.own.flow.map_or(0, |f| f.counters.n_updates);
+            (r.own.bytes.flow, n_updates)
         },
     );
     add(
@@ -100,15 +103,20 @@ fn run(
 ) -> Result<Taken, LabError> {
     let run = || {
         let battery = NematicBattery::new(&colloid.parameters, &colloid.accuracy)?;
-        let charge = ChargeSettings {
-            tolerance: 1e-6,
-            order_tolerance: 1e-4,
-            ..ChargeSettings::default()
+        let protocol = Protocol {
+            charge: ChargeSettings {
+                tolerance: 1e-6,
+                order_tolerance: 1e-4,
+                ..ChargeSettings::default()
+            },
+            discharge: colloid.discharge.clone(),
+            ..Protocol::default()
         };
         let clock = CpuClock::start();
-        let charged = battery.charge(&charge, &mut RunHooks::new(interrupt))?;
-        let released = charged.switch(&SwitchSettings::default())?;
-        let run = released.discharge(&colloid.discharge, &mut RunHooks::new(interrupt))?;
+        let (charged, run) = battery.run(&protocol, &mut RunHooks::new(interrupt))?;
+        let Some(run) = run else {
+            return Ok(Taken::default());
+        };
         let report = run.record.report;
         let (term_bytes, term_calls) = own(&report);
         Ok(Taken {

@@ -4,8 +4,8 @@ use topo_core::{CpuClock, Interrupt, RunHooks};
 use topo_rod::contact::ContactPairs;
 use topo_rod::energy::{At, Bend, EnergyTerm, Force, Stiffness, Stretch};
 use topo_rod::{
-    Accuracy, ChargeSettings, ContactParameters, CutSite, DischargeSettings, FrictionParameters,
-    Geometry, Guards, RodBattery, RodParameters, RodState, WorkAccount,
+    Accuracy, ContactParameters, DischargeSettings, FrictionParameters, Geometry, Guards, Protocol,
+    RodBattery, RodParameters, RodState, WorkAccount,
 };
 
 use super::term::{Taken, Term};
@@ -100,14 +100,16 @@ fn run(
     let run = || {
         let guards = Guards::default();
         let battery = RodBattery::new(parameters, &accuracy, guards, &curve)?;
-        let charged = battery.charge(&ChargeSettings::default(), &mut RunHooks::new(interrupt))?;
-        let settings = DischargeSettings {
-            until_released: 0.99,
-            ..DischargeSettings::default()
+        let protocol = Protocol {
+            discharge: DischargeSettings {
+                until_released: 0.99,
+                ..DischargeSettings::default()
+            },
+            ..Protocol::default()
         };
-        let cut = charged.cut(CutSite::MaximumEnergyDensity)?;
-        let discharge = cut.discharge(&settings, &mut RunHooks::new(interrupt))?;
-        Ok([charged.record().report.clone(), discharge.record.report])
+        let (charged, run) = battery.run(&protocol, &mut RunHooks::new(interrupt))?;
+        let charge = charged.record().report.clone();
+        Ok(std::iter::once(charge).chain(run.map(|r| r.record.report)))
     };
     let reports = run().map_err(refused)?;
     let mut taken = Taken {

@@ -2,9 +2,9 @@
 
 use topo_core::Interrupt;
 use topo_nematic::{
-    Boundary, ChargeSettings, DischargeSettings, FlowParameters, FreeSurface, NematicAccuracy,
-    NematicBattery, NematicError, NematicParameters, Precision, RunHooks, SurfacePattern,
-    SwitchSettings, SwitchTarget,
+    Boundary, DischargeSettings, FlowParameters, FreeSurface, NematicAccuracy, NematicBattery,
+    NematicError, NematicParameters, Precision, Protocol, RunHooks, SurfacePattern, SwitchSettings,
+    SwitchTarget,
 };
 
 use super::sets::{CaseSet, Colloid, colloids};
@@ -76,16 +76,21 @@ impl Run {
         };
         fit(&mut parameters, self.spacing);
         let battery = NematicBattery::new(&parameters, &self.accuracy)?;
-        let charged = battery.charge(&ChargeSettings::default(), &mut RunHooks::new(interrupt))?;
-        let released = charged.switch(&SwitchSettings {
-            to: SwitchTarget::Free(self.free),
-            ramp: None,
-        })?;
-        let discharge = DischargeSettings {
-            flow: self.flow,
-            ..DischargeSettings::default()
+        let protocol = Protocol {
+            switch: SwitchSettings {
+                to: SwitchTarget::Free(self.free),
+                ramp: None,
+            },
+            discharge: DischargeSettings {
+                flow: self.flow,
+                ..DischargeSettings::default()
+            },
+            ..Protocol::default()
         };
-        let run = released.discharge(&discharge, &mut RunHooks::new(interrupt))?;
+        let (charged, run) = battery.run(&protocol, &mut RunHooks::new(interrupt))?;
+        let Some(run) = run else {
+            return Ok((Quantities::default(), 0));
+        };
         let curve = &run.record.curve;
         let names: Vec<&str> = curve.parts().iter().map(String::as_str).collect();
         let times = DischargeTimes::between(

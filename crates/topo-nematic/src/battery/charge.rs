@@ -7,9 +7,9 @@ use super::hooks::RunHooks;
 use super::record::{ChargeReport, ChargeStop};
 use crate::kernel::run::Kernel;
 use crate::memory::ByteAccount;
-use crate::{
-    EnergyParts, NematicError, NematicState, OrderParameter, Particle, Ring, order_parameter, ring,
-};
+use crate::order::{OrderParameter, order_parameter};
+use crate::ring::{Ring, ring};
+use crate::{EnergyParts, NematicError, NematicState, Particle};
 
 /// A charged battery: the relaxed nematic, and how it got there.
 #[derive(Debug, Clone)]

@@ -4,17 +4,18 @@ mod unfinished;
 
 use topo_core::{CpuClock, Phase, Progress};
 
-use self::unfinished::{Best, MOST_KICKS, Moving, Progressed, Unfinished};
+use self::unfinished::{MOST_KICKS, Moving, Progressed, Unfinished};
 use super::NematicBattery;
 use super::charge_settings::ChargeSettings;
 use super::hooks::RunHooks;
 use super::minimum::Check;
 use super::record::{ChargeReport, ChargeStop};
-use crate::MinimumState;
+use crate::battery::record::MinimumState;
 use crate::kernel::run::Kernel;
 use crate::memory::ByteAccount;
+use crate::order::order_parameter;
 use crate::relax::Relaxation;
-use crate::{NematicError, NematicState, order_parameter};
+use crate::{NematicError, NematicState};
 
 /// Steps between looks at the order parameter.
 const CHECK_EVERY: u64 = 25;
@@ -164,7 +165,7 @@ impl<'a, 'h> Charging<'a, 'h> {
             relaxation.set(flat);
         }
         Moving {
-            clock: relaxation.clock,
+            fire: relaxation.fire,
             velocity: std::mem::take(&mut relaxation.velocity),
             q: relaxation.into_q(),
             last_order: None,
@@ -178,13 +179,13 @@ impl<'a, 'h> Charging<'a, 'h> {
         let order_scale = self.battery.parameters.material.order();
         let mut relaxation = Relaxation::new(kernel);
         let mut last_order = from.last_order;
-        relaxation.restore(from.q, from.velocity, from.clock);
+        relaxation.restore(from.q, from.velocity, from.fire);
         self.at.n_bytes = self.at.n_bytes.max(relaxation.n_bytes());
         let mut rms;
         let end = loop {
             rms = relaxation.step();
             self.at.n_steps += 1;
-            let step = relaxation.clock.n_steps;
+            let step = relaxation.fire.n_steps();
             if !rms.is_finite() {
                 return Err(NematicError::Diverged { step });
             }
@@ -202,43 +203,29 @@ impl<'a, 'h> Charging<'a, 'h> {
                 if settled && rms < settings.tolerance {
                     break End::Converged;
                 }
-            } else if step >= settings.max_steps
-                || self.hooks.is_interrupted()
-                || self.hooks.is_due()
-            {
-                if self.hooks.is_due() {
-                    let record = Unfinished {
-                        progressed: self.at_present(),
-                        moving: Some(Moving {
-                            q: relaxation.q.clone(),
-                            velocity: relaxation.velocity.clone(),
-                            clock: relaxation.clock,
-                            last_order,
-                        }),
-                    };
-                    self.hooks.save(SCHEMA, &self.case, &record)?;
-                }
-                if self.hooks.is_interrupted() {
-                    break End::Interrupted;
-                }
-                if step >= settings.max_steps {
-                    self.at.has_reached_limit = true;
-                    break End::AtLimit;
-                }
+                continue;
+            }
+            if self.hooks.is_due() {
+                let record = Unfinished {
+                    progressed: self.at_present(),
+                    moving: Some(Moving::of(&relaxation, last_order)),
+                };
+                self.hooks.save(SCHEMA, &self.case, &record)?;
+            }
+            if self.hooks.is_interrupted() {
+                break End::Interrupted;
+            }
+            if step >= settings.max_steps {
+                self.at.has_reached_limit = true;
+                break End::AtLimit;
             }
         };
         let energy = kernel.energy(&relaxation.q).total();
-        let best = self.at.best.as_ref();
-        if best.is_none_or(|best| energy < best.energy) {
+        self.at.offer(energy, seed, rms, || {
             let mut state = self.battery.start(0.0, 0.0)?;
             kernel.gather(&relaxation.into_q(), state.q_mut());
-            self.at.best = Some(Best {
-                energy,
-                state,
-                seed,
-                rms_field: rms,
-            });
-        }
+            Ok(state)
+        })?;
         Ok(end)
     }
 

@@ -1,7 +1,18 @@
 //! Discharging: the nematic relaxes in time after the switch.
+//!
+//! Reading order: `model` (kernel, `ramp` and `flow`, and the account of the energy), `system` (the model with `crate::stabilised`, the
+//! integrator, which holds the field), `observer` (what is recorded), `run` (the loop), `resume` (what a checkpoint keeps). Steps are
+//! made by [`topo_core::TimeStepping`], as those of rods; the rest is no [`topo_core::Simulation`], whose models give rates as flat
+//! vectors in double precision, where this one fuses them with the stages and its flow sees every trial.
 
-mod advance;
-mod progressing;
+mod flow;
+mod flow_direction;
+mod model;
+mod observer;
+mod ramp;
+mod resume;
+mod run;
+mod system;
 
 use serde::{Deserialize, Serialize};
 use topo_core::{StopReason, finite, in_range, positive};

@@ -91,9 +91,9 @@ impl SwitchedNematic {
         relaxation.set(start.q_tensor());
         let mut last_tilt: Option<f64> = None;
         let mut source = FinalSource::Unconverged;
-        while relaxation.clock.n_steps < MAX_STEPS && !hooks.is_interrupted() {
+        while relaxation.fire.n_steps() < MAX_STEPS && !hooks.is_interrupted() {
             let rms_field = relaxation.step();
-            let step = relaxation.clock.n_steps;
+            let step = relaxation.fire.n_steps();
             if !rms_field.is_finite() {
                 return Err(NematicError::Diverged { step });
             }

@@ -1,7 +1,8 @@
 //! What a caller may hang into a run of a nematic.
 
 use super::record::NematicSample;
-use crate::{FlowCoupling, NematicState};
+use crate::NematicState;
+use crate::flow::FlowCoupling;
 
 /// Hooks of a charge or a discharge; none of them changes its result.
 ///

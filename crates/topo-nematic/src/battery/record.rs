@@ -1,4 +1,4 @@
-//! What a phase of a run leaves behind.
+//! What charges and discharges leave behind: reports, samples, the final state.
 
 use std::fmt;
 
@@ -6,9 +6,14 @@ use serde::ser::SerializeMap;
 use serde::{Deserialize, Serialize};
 use topo_core::PhaseExtension;
 
-use super::minimum::MinimumReport;
+pub use super::minimum::MinimumReport;
+pub use topo_core::MinimumState;
+
+use crate::EnergyParts;
+use crate::flow::FlowCounters;
 use crate::memory::ByteAccount;
-use crate::{EnergyParts, FlowCounters, OrderParameter, Ring};
+use crate::order::OrderParameter;
+use crate::ring::Ring;
 
 /// Channels by which energy is dissipated, as tables name them.
 pub(crate) const CHANNELS: [&str; 2] = ["rotation", "viscous"];

@@ -14,7 +14,7 @@ use crate::domain::{STEPS, SpecialCell, neighbour};
 use crate::kernel::run::{Kernel, Threads};
 use crate::model::Surface;
 use crate::real::Real;
-use crate::{NematicError, NematicState};
+use crate::{NematicError, NematicParameters, NematicState, Particle};
 
 /// What the surface does after the switch.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -272,63 +272,72 @@ fn extensions(
     kernel: &Kernel<f64>,
     state: &NematicState,
 ) -> Vec<Extension> {
-    let (grid, parameters) = (&battery.grid, battery.parameters());
+    let grid = &battery.grid;
     let Some(particle) = &battery.particle else {
         return Vec::new();
     };
-    let (h, order) = (grid.spacing(), parameters.material.order());
     let [nx, ny, _] = grid.cells();
-    let mut extensions = Vec::new();
-    for special in &kernel.domain.special {
-        let cell = special.cell as usize;
-        let ijk = [cell % nx, cell / nx % ny, cell / (nx * ny)];
-        if !particle.contains_cell(grid, ijk) {
+    let cells = kernel.domain.special.iter().map(|s| s.cell as usize);
+    cells
+        .map(|cell| (cell, [cell % nx, cell / nx % ny, cell / (nx * ny)]))
+        .filter(|(_, ijk)| particle.contains_cell(grid, *ijk))
+        .map(|(cell, ijk)| extension(battery.parameters(), particle, anchoring, state, cell, ijk))
+        .collect()
+}
+
+/// Value and slope of one cell inside the sphere: means over its links that cut the surface.
+fn extension(
+    parameters: &NematicParameters,
+    particle: &Particle,
+    anchoring: Anchoring,
+    state: &NematicState,
+    cell: usize,
+    ijk: [usize; 3],
+) -> Extension {
+    let grid = state.grid();
+    let (h, order) = (grid.spacing(), parameters.material.order());
+    let (mut on_surface, mut inwards, mut weights) = ([0.0; 5], [0.0; 5], 0.0);
+    for (link, (axis, up)) in STEPS.into_iter().enumerate() {
+        let Some(outer) = neighbour(grid, ijk, link).filter(|n| state.is_fluid(*n)) else {
             continue;
+        };
+        let outside = particle.offset(grid, grid.centre(outer));
+        let share = crate::boundary::crossing(outside, axis, !up, h, particle.radius());
+        let mut end = outside;
+        end[axis] += if up { -share * h } else { share * h };
+        let there = state.tensor(grid.index(outer));
+        let link_share = share.max(crate::boundary::SHORTEST_LINK);
+        // With weak anchoring the surface is between what it prefers and what it touches.
+        let (held, _) = anchoring.conductance(
+            1.0 / link_share,
+            (end[axis] / norm(end)).abs(),
+            h / parameters.material.elastic_constant,
+        );
+        let held = held * link_share;
+        let wanted = parameters.pattern.q_tensor(order, end);
+        for c in 0..5 {
+            let surface = there[c] + held * (wanted[c] - there[c]);
+            on_surface[c] += link_share * surface;
+            // link_share cancels in the weighted slope.
+            inwards[c] += (1.0 - share) * (surface - there[c]);
         }
-        let offset = particle.offset(grid, grid.centre(ijk));
-        let (mut on_surface, mut inwards, mut weights) = ([0.0; 5], [0.0; 5], 0.0);
-        for (link, (axis, up)) in STEPS.into_iter().enumerate() {
-            let Some(outer) = neighbour(grid, ijk, link).filter(|n| state.is_fluid(*n)) else {
-                continue;
-            };
-            let outside = particle.offset(grid, grid.centre(outer));
-            let share = crate::boundary::crossing(outside, axis, !up, h, particle.radius());
-            let mut end = outside;
-            end[axis] += if up { -share * h } else { share * h };
-            let there = state.tensor(grid.index(outer));
-            let link_share = share.max(crate::boundary::SHORTEST_LINK);
-            // With weak anchoring the surface is between what it prefers and what it touches.
-            let (held, _) = anchoring.conductance(
-                1.0 / link_share,
-                (end[axis] / norm(end)).abs(),
-                h / parameters.material.elastic_constant,
-            );
-            let held = held * link_share;
-            let wanted = parameters.pattern.q_tensor(order, end);
-            for c in 0..5 {
-                let surface = there[c] + held * (wanted[c] - there[c]);
-                on_surface[c] += link_share * surface;
-                // link_share cancels in the weighted slope.
-                inwards[c] += (1.0 - share) * (surface - there[c]);
-            }
-            weights += link_share;
-        }
-        if weights > 0.0 {
-            on_surface = on_surface.map(|x| x / weights);
-            inwards = inwards.map(|x| x / weights);
-        } else {
-            on_surface = match anchoring {
-                Anchoring::Free => state.tensor(cell),
-                _ => parameters.pattern.q_tensor(order, offset),
-            };
-        }
-        extensions.push(Extension {
-            cell,
-            on_surface,
-            inwards,
-        });
+        weights += link_share;
     }
-    extensions
+    if weights > 0.0 {
+        on_surface = on_surface.map(|x| x / weights);
+        inwards = inwards.map(|x| x / weights);
+    } else {
+        let offset = particle.offset(grid, grid.centre(ijk));
+        on_surface = match anchoring {
+            Anchoring::Free => state.tensor(cell),
+            _ => parameters.pattern.q_tensor(order, offset),
+        };
+    }
+    Extension {
+        cell,
+        on_surface,
+        inwards,
+    }
 }
 
 #[cfg(test)]

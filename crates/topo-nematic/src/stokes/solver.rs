@@ -10,7 +10,7 @@ use crate::stokes::{FaceSites, MacField, StokesError};
 ///
 /// On the staggered grid with the 7-point Laplacian: the normal component vanishes on a wall, and the tangential ones are
 /// reflected by it (ghost value -u), so that the velocity is second order. The map from f to u is linear, symmetric and positive
-/// semi-definite, and moving walls are forces too (see [`Drive`](crate::Drive)). In a fully periodic box the mean velocity is
+/// semi-definite, and moving walls are forces too (see [`Drive`](crate::stokes::Drive)). In a fully periodic box the mean velocity is
 /// zero, and the mean force is balanced by a mean pressure gradient.
 pub trait StokesSolver: Send + Sync {
     /// Writes the velocity that `force` (per volume, on faces) drives.

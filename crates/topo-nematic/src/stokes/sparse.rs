@@ -137,45 +137,8 @@ impl Sparse {
         let result = self.minres.solve(
             self.tolerance,
             MAX_ITERATIONS,
-            |x, y| {
-                let (velocity, pressure) = x.split_at(3 * n);
-                let (force, outflow) = y.split_at_mut(3 * n);
-                let mut parts = force.chunks_exact_mut(n);
-                let mut part = || parts.next().unwrap_or_default();
-                let (f_x, f_y, f_z) = (part(), part(), part());
-                let balance = |component: usize, force: &mut [f64]| {
-                    let u = &velocity[component * n..(component + 1) * n];
-                    operators[component].apply(u, force);
-                    gradient(&operators[component], pressure, force);
-                };
-                rayon::join(
-                    || rayon::join(|| balance(0, f_x), || balance(1, f_y)),
-                    || {
-                        rayon::join(
-                            || balance(2, f_z),
-                            || divergence(operators, velocity, outflow),
-                        )
-                    },
-                );
-            },
-            |x, y| {
-                let mut parts = y.chunks_exact_mut(n);
-                let mut part = || parts.next().unwrap_or_default();
-                let (y_x, y_y, y_z, y_p) = (part(), part(), part(), part());
-                let [m_x, m_y, m_z] = &mut *components;
-                let cycle = |m: &mut Multigrid, component: usize, y: &mut [f64]| {
-                    m.cycle(&x[component * n..(component + 1) * n], y);
-                    if periodic {
-                        remove_mean(y);
-                    }
-                };
-                rayon::join(
-                    || rayon::join(|| cycle(m_x, 0, y_x), || cycle(m_y, 1, y_y)),
-                    || cycle(m_z, 2, y_z),
-                );
-                y_p.copy_from_slice(&x[3 * n..]);
-                remove_mean(y_p);
-            },
+            |x, y| balance(operators, x, y),
+            |x, y| precondition(components, periodic, x, y),
         );
         self.n_iterations += result.n_iterations as u64;
         if result.residual > self.tolerance || result.residual.is_nan() {
@@ -197,6 +160,51 @@ impl Sparse {
     fn scale(&self) -> f64 {
         self.grid.spacing().powi(2) / self.viscosity
     }
+}
+
+/// Writes the force and the outflow that belong to the velocity and the pressure `x` to `y`.
+fn balance(operators: &[Operator; 3], x: &[f64], y: &mut [f64]) {
+    let n = x.len() / 4;
+    let (velocity, pressure) = x.split_at(3 * n);
+    let (force, outflow) = y.split_at_mut(3 * n);
+    let mut parts = force.chunks_exact_mut(n);
+    let mut part = || parts.next().unwrap_or_default();
+    let (f_x, f_y, f_z) = (part(), part(), part());
+    let balance = |component: usize, force: &mut [f64]| {
+        let u = &velocity[component * n..(component + 1) * n];
+        operators[component].apply(u, force);
+        gradient(&operators[component], pressure, force);
+    };
+    rayon::join(
+        || rayon::join(|| balance(0, f_x), || balance(1, f_y)),
+        || {
+            rayon::join(
+                || balance(2, f_z),
+                || divergence(operators, velocity, outflow),
+            )
+        },
+    );
+}
+
+/// Writes to `y` about the velocity and the pressure of the force and the outflow `x`: a cycle for each component, the outflow itself.
+fn precondition(components: &mut [Multigrid; 3], periodic: bool, x: &[f64], y: &mut [f64]) {
+    let n = x.len() / 4;
+    let mut parts = y.chunks_exact_mut(n);
+    let mut part = || parts.next().unwrap_or_default();
+    let (y_x, y_y, y_z, y_p) = (part(), part(), part(), part());
+    let [m_x, m_y, m_z] = components;
+    let cycle = |m: &mut Multigrid, component: usize, y: &mut [f64]| {
+        m.cycle(&x[component * n..(component + 1) * n], y);
+        if periodic {
+            remove_mean(y);
+        }
+    };
+    rayon::join(
+        || rayon::join(|| cycle(m_x, 0, y_x), || cycle(m_y, 1, y_y)),
+        || cycle(m_z, 2, y_z),
+    );
+    y_p.copy_from_slice(&x[3 * n..]);
+    remove_mean(y_p);
 }
 
 /// Takes the mean out of `values`.

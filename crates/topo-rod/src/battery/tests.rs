@@ -8,7 +8,7 @@ use super::hooks::RunHooks;
 use super::record::Scales;
 use super::*;
 use crate::energy::StoredEnergy;
-use crate::{ChargeSettings, Reading, cut_candidates};
+use crate::{ChargeSettings, Protocol, Reading, cut_candidates};
 
 /// A right-handed trefoil on a torus; of tube, the thinner the torus the less.
 pub(super) fn trefoil(minor: f64) -> Polyline {
@@ -147,4 +147,32 @@ fn candidates_lie_at_their_vertices() {
         (found[0].vertex, found[0].at, found[0].density),
         (20, 0.25, 2.0)
     );
+}
+
+/// A protocol is its three steps, with a file a phase; interrupted it has no discharge, and goes on to the same bits.
+#[test]
+fn a_protocol_is_charge_cut_and_discharge() {
+    let battery = battery(0.4, Reading::Shrunk);
+    let mut protocol = Protocol::default();
+    protocol.charge.duration = 0.05;
+    protocol.discharge.longest = 0.05;
+    let hooks = &mut RunHooks::default();
+    let charged = battery.charge(&protocol.charge, hooks).unwrap();
+    let cut = charged.cut(protocol.cut).unwrap();
+    let by_hand = cut.discharge(&protocol.discharge, hooks).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("rod.checkpoint");
+    let interrupt = topo_core::Interrupt::new();
+    interrupt.request();
+    let hooks = &mut RunHooks::new(&interrupt).with_checkpoint(&path, 0.0);
+    assert!(battery.run(&protocol, hooks).unwrap().1.is_none() && path.exists());
+    for _ in 0..2 {
+        let hooks = &mut RunHooks::default().with_checkpoint(&path, 0.0);
+        let (again, run) = battery.run(&protocol, hooks).unwrap();
+        assert_eq!(again.state().vertices(), charged.state().vertices());
+        let [run, by_hand] =
+            [&run.unwrap(), &by_hand].map(|d| (d.after_cut, d.record.curve.clone()));
+        assert_eq!(run, by_hand);
+    }
+    assert!(folder.path().join("rod.checkpoint.discharge").exists());
 }

@@ -8,7 +8,7 @@ use super::vtk::{self, Array, Lattice};
 use crate::error::ViewError;
 use nalgebra::Vector3;
 use std::f64::consts::{PI, TAU};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use topo_analysis::{LinePoint, SlicePoint};
 use topo_lab::FieldSnapshot;
 use topo_nematic::NematicParameters;
@@ -63,7 +63,17 @@ pub fn write(
         }
         files.notes.push(text.to_owned());
     }
-    let order = parameters.material.order();
+    write_fields(&fields, &about, parameters.material.order(), wanted, files)
+}
+
+/// Writes the whole fields, each in the formats asked for.
+fn write_fields(
+    fields: &[PathBuf],
+    about: &About,
+    order: f64,
+    wanted: &Wanted,
+    files: &mut Files<'_>,
+) -> Result<(), ViewError> {
     let mut series = Vec::new();
     for (k, path) in fields.iter().enumerate() {
         let field = FieldSnapshot::read(path)?;

@@ -6,7 +6,7 @@ use super::vtk::{self, Array, Lattice};
 use crate::error::ViewError;
 use std::path::Path;
 use topo_lab::FieldSnapshot;
-use topo_nematic::{matrix, order_and_director};
+use topo_nematic::tensor::{matrix, order_and_director};
 
 /// What follows from a field: zero inside the particle.
 pub struct Derived {

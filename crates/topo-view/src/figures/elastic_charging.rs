@@ -27,6 +27,13 @@ pub(super) const FIGURE: Figure = Figure {
 
 const KNOTS: [&str; 2] = ["3_1", "4_1"];
 
+/// The energies shown, with colours and widths of their lines.
+const PARTS: [(&str, &str, f64); 3] = [
+    ("total", INK, 1.8),
+    ("twist", VERMILION, 1.4),
+    ("bend", BLUE, 1.4),
+];
+
 fn draw(context: &Context) -> Result<Drawn, ViewError> {
     let sweep = Sweep::read(context.results)?;
     let mut table = Table::new("panel,knot,twist,x,y");
@@ -173,26 +180,17 @@ impl<'a> Row<'a> {
             x: self.panel_x(),
             y: Axis::linear("Energy *E* / *E*_{0}", (0.0, high * 1.06), y_step),
         };
-        let parts: [(&str, &str, f64); 3] = [
-            ("total", INK, 1.8),
-            ("twist", VERMILION, 1.4),
-            ("bend", BLUE, 1.4),
-        ];
         let mut plots = Vec::new();
-        for (part, color, width) in parts {
-            let points: Vec<(f64, f64)> = self
-                .cases
-                .iter()
+        for (part, color, width) in PARTS {
+            let firsts = self.cases.iter().map(|c| c.first());
+            let points: Vec<(f64, f64)> = firsts
                 .map(|c| {
-                    let c = c.first();
-                    (
-                        c.twist,
-                        match part {
-                            "total" => c.energy,
-                            "twist" => c.twist_energy,
-                            _ => c.bend,
-                        },
-                    )
+                    let energy = match part {
+                        "total" => c.energy,
+                        "twist" => c.twist_energy,
+                        _ => c.bend,
+                    };
+                    (c.twist, energy)
                 })
                 .collect();
             for (x, y) in &points {
@@ -216,16 +214,7 @@ impl<'a> Row<'a> {
             Style::default().middle().bold().size(13.0),
         );
         if first {
-            for (k, (part, color, _)) in parts.iter().enumerate() {
-                let y = top + 36.0 + 11.0 * k as f64;
-                canvas.line(
-                    [panel.at[0] + 118.0, y - 3.0],
-                    [panel.at[0] + 134.0, y - 3.0],
-                    color,
-                    1.8,
-                );
-                canvas.text(panel.at[0] + 138.0, y, part, Style::default().size(9.0));
-            }
+            draw_legend(canvas, panel.at[0] + 118.0, top + 36.0);
         }
     }
 
@@ -261,12 +250,8 @@ impl<'a> Row<'a> {
         // the first is wider, so that it shows where the second lies on it
         for ((state, color), width) in ends.iter().flatten().zip(colors).zip([3.4, 1.4]) {
             let curve = &state.1;
-            let mut points: Vec<(f64, f64)> = curve
-                .s
-                .iter()
-                .copied()
-                .zip(curve.density.iter().copied())
-                .collect();
+            let (s, w) = (curve.s.iter().copied(), curve.density.iter().copied());
+            let mut points: Vec<(f64, f64)> = s.zip(w).collect();
             points.push((round(curve), curve.density[0]));
             for (x, y) in &points {
                 table.row(&["b-density", self.knot], &[state.0, *x, *y]);
@@ -275,12 +260,8 @@ impl<'a> Row<'a> {
         }
         panel.draw(canvas, plots, &[]);
         let name = text::knot_name(self.knot);
-        canvas.text(
-            panel.at[0] + 8.0,
-            top + 17.0,
-            &name,
-            Style::default().bold().size(13.0),
-        );
+        let bold = Style::default().bold().size(13.0);
+        canvas.text(panel.at[0] + 8.0, top + 17.0, &name, bold);
         if first {
             for (k, (state, color)) in ends.iter().flatten().zip(colors).enumerate() {
                 let x = panel.at[0] + 198.0;
@@ -313,6 +294,15 @@ impl<'a> Row<'a> {
 }
 
 /// Length of a closed curve whose last edge returns to its first vertex.
+/// Names of the energies beside samples of their lines.
+fn draw_legend(canvas: &mut Canvas, left: f64, top: f64) {
+    for (k, (part, color, _)) in PARTS.iter().enumerate() {
+        let y = top + 11.0 * k as f64;
+        canvas.line([left, y - 3.0], [left + 16.0, y - 3.0], color, 1.8);
+        canvas.text(left + 20.0, y, part, Style::default().size(9.0));
+    }
+}
+
 fn round(curve: &Curve) -> f64 {
     let n = curve.s.len();
     let last = curve.s[n - 1] - curve.s[0];

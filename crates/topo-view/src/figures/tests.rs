@@ -27,6 +27,24 @@ fn struts_of_tight_knots_are_drawn_on_demand() {
     assert_ne!(a, b);
 }
 
+/// The files of a figure: all there, every row with all columns, every sign in the font, the quality said.
+fn check_files(results: &Path, name: &str) {
+    let file = |extension: &str| results.join(format!("figures/{name}.{extension}"));
+    for extension in ["svg", "png", "csv"] {
+        assert!(std::fs::metadata(file(extension)).unwrap().len() > 200);
+    }
+    let csv = std::fs::read_to_string(file("csv")).unwrap();
+    let n_columns = csv.lines().next().unwrap().split(',').count();
+    assert!(csv.lines().all(|l| l.split(',').count() == n_columns));
+    let svg = std::fs::read_to_string(file("svg")).unwrap();
+    let missing = missing_glyphs(&svg);
+    assert!(missing.is_empty(), "{missing:?}");
+    assert!(
+        svg.contains("Draft quality"),
+        "{name} does not say its quality"
+    );
+}
+
 #[test]
 fn every_figure_is_drawn_with_its_files_and_told_in_the_gallery() {
     let dir = tempfile::tempdir().unwrap();
@@ -40,28 +58,7 @@ fn every_figure_is_drawn_with_its_files_and_told_in_the_gallery() {
             "{}",
             figure.name
         );
-        for extension in ["svg", "png", "csv"] {
-            let file = dir
-                .path()
-                .join(format!("figures/{}.{extension}", figure.name));
-            assert!(std::fs::metadata(file).unwrap().len() > 200);
-        }
-        let csv = std::fs::read_to_string(dir.path().join(format!("figures/{}.csv", figure.name)))
-            .unwrap();
-        let n_columns = csv.lines().next().unwrap().split(',').count();
-        assert!(csv.lines().all(|l| l.split(',').count() == n_columns));
-        let svg = std::fs::read_to_string(dir.path().join(format!("figures/{}.svg", figure.name)))
-            .unwrap();
-        assert!(
-            missing_glyphs(&svg).is_empty(),
-            "{:?}",
-            missing_glyphs(&svg)
-        );
-        assert!(
-            svg.contains("Draft quality"),
-            "{} does not say its quality",
-            figure.name
-        );
+        check_files(dir.path(), figure.name);
         done.push(d);
     }
     let mut p =

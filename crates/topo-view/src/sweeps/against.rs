@@ -141,12 +141,10 @@ impl Lines<'_> {
         [k, n]: [usize; 2],
     ) -> Option<Line> {
         let mut line = Line {
-            points: Vec::new(),
-            bars: Vec::new(),
-            look,
             label: label.to_owned(),
             is_marked: true,
             is_joined: self.x.is_numeric,
+            ..Line::new(Vec::new(), look)
         };
         for (place, value) in self.x.values.iter().enumerate() {
             let here = group.rows.iter().filter(|r| self.x.place(r) == Some(place));

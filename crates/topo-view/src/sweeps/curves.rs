@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::against::quoted;
 use super::cases::{Cases, Row};
-use super::groups::{Groups, Look, others};
+use super::groups::{Groups, others};
 use super::sheet::{self, Chart, Line, Scaling};
 use crate::data::read_csv;
 use crate::error::ViewError;
@@ -33,7 +33,7 @@ pub fn draw(cases: &Cases) -> Result<Option<Drawn>, ViewError> {
             for (t, share) in &points {
                 table.row(&[row.case(), &quoted(&group.label)], &[*t, *share]);
             }
-            lines.push(line(points, group.look.clone()));
+            lines.push(Line::new(points, group.look.clone()));
         }
     }
     if lines.is_empty() {
@@ -72,17 +72,6 @@ pub fn draw(cases: &Cases) -> Result<Option<Drawn>, ViewError> {
         csv: table.finish(),
         finding: notes.join(" "),
     }))
-}
-
-fn line(points: Vec<(f64, f64)>, look: Look) -> Line {
-    Line {
-        points,
-        bars: Vec::new(),
-        look,
-        label: String::new(),
-        is_marked: false,
-        is_joined: true,
-    }
 }
 
 /// The rows of a case's table that are of one discharge; none without the table.

@@ -66,12 +66,8 @@ fn chart(
         }
         begin_at(&mut points, x);
         lines.push(Line {
-            points,
-            bars: Vec::new(),
-            look: Look::named(k),
             label: column.label.to_owned(),
-            is_marked: false,
-            is_joined: true,
+            ..Line::new(points, Look::named(k))
         });
     }
     (!lines.is_empty()).then(|| Chart {

@@ -26,6 +26,20 @@ pub struct Line {
     pub is_joined: bool,
 }
 
+impl Line {
+    /// Points joined in their order, without marks, bars or a label.
+    pub fn new(points: Vec<(f64, f64)>, look: Look) -> Self {
+        Self {
+            points,
+            bars: Vec::new(),
+            look,
+            label: String::new(),
+            is_marked: false,
+            is_joined: true,
+        }
+    }
+}
+
 /// An axis before its range is known.
 #[derive(Debug, Clone)]
 pub enum Scaling {

@@ -1,5 +1,6 @@
 use super::*;
-use topo_nematic::{Anchoring, Boundary, PlateDirector, SurfacePattern};
+use topo_nematic::anchoring::PlateDirector;
+use topo_nematic::{Anchoring, Boundary, SurfacePattern};
 
 fn parse(text: &str) -> Result<NematicScene, LabError> {
     NematicScene::parse(text, Path::new("scene.toml"))

@@ -1,12 +1,12 @@
 //! What of a charge is kept from moment to moment, and whether a checkpoint fits.
 
 use serde::{Deserialize, Serialize};
-use topo_core::MOST_COUNTED;
+use topo_core::{Fire, MOST_COUNTED};
 
-use crate::NematicState;
 use crate::battery::NematicBattery;
 use crate::battery::minimum::MinimumReport;
-use crate::relax::Clock;
+use crate::relax::Relaxation;
+use crate::{NematicError, NematicState};
 
 /// Most kicks along unstable modes.
 pub(super) const MOST_KICKS: u32 = 4;
@@ -25,7 +25,7 @@ pub(super) struct Best {
 pub(super) struct Moving {
     pub q: Vec<f64>,
     pub velocity: Vec<f64>,
-    pub clock: Clock,
+    pub fire: Fire,
     pub last_order: Option<f64>,
 }
 
@@ -42,6 +42,39 @@ pub(super) struct Progressed {
     pub has_reached_limit: bool,
     pub n_bytes: u64,
     pub cpu_seconds: f64,
+}
+
+impl Moving {
+    /// The present moment of `relaxation`.
+    pub fn of(relaxation: &Relaxation<'_, f64>, last_order: Option<f64>) -> Self {
+        Self {
+            q: relaxation.q.clone(),
+            velocity: relaxation.velocity.clone(),
+            fire: relaxation.fire,
+            last_order,
+        }
+    }
+}
+
+impl Progressed {
+    /// Keeps a relaxed state of `energy`, if there is none of lower energy.
+    pub fn offer(
+        &mut self,
+        energy: f64,
+        seed: f64,
+        rms_field: f64,
+        state: impl FnOnce() -> Result<NematicState, NematicError>,
+    ) -> Result<(), NematicError> {
+        if self.best.as_ref().is_none_or(|best| energy < best.energy) {
+            self.best = Some(Best {
+                energy,
+                state: state()?,
+                seed,
+                rms_field,
+            });
+        }
+        Ok(())
+    }
 }
 
 /// A charge on its way; one that is done has gone through all seeds and its check.
@@ -66,7 +99,7 @@ impl Unfinished {
                 && *best.state.grid() == battery.grid
                 && best.state.particle().copied() == battery.particle
         };
-        let moves = |m: &Moving| whole(&m.q) && whole(&m.velocity) && m.clock.is_sound();
+        let moves = |m: &Moving| whole(&m.q) && whole(&m.velocity) && m.fire.is_sound();
         let p = &self.progressed;
         let through = p.seed >= n_seeds;
         let found = |m: &MinimumReport| m.lowest_eigenvalue.is_finite() && m.residual.is_finite();

@@ -4,12 +4,12 @@ use std::f64::consts::PI;
 
 use topo_core::{Interrupt, Rejection};
 
-use crate::battery::coupled_flow::CoupledFlow;
+use super::flow::CoupledFlow;
 use crate::stabilised::{Drift, Stabilised};
+use crate::tensor::uniaxial;
 use crate::{
     ChargeSettings, DischargeSettings, FlowParameters, FreeSurface, NematicBattery,
     NematicParameters, NematicState, RunHooks, SurfacePattern, SwitchSettings, SwitchTarget,
-    uniaxial,
 };
 
 const N: usize = 24;
@@ -222,9 +222,9 @@ fn flow_takes_what_the_energy_of_the_switched_surface_loses_by_it() {
             .kernel::<f64>(&after, charged.battery.accuracy().threads)
             .without_gaps();
         let mut errors = Vec::new();
-        let mut see = |sample: &crate::NematicSample,
+        let mut see = |sample: &crate::battery::record::NematicSample,
                        state: &NematicState,
-                       flow: Option<&crate::FlowCoupling>| {
+                       flow: Option<&crate::flow::FlowCoupling>| {
             let flow = flow.unwrap();
             if sample.time < ramp.unwrap_or(0.0) {
                 return;
@@ -258,7 +258,7 @@ fn flow_takes_what_the_energy_of_the_switched_surface_loses_by_it() {
 #[test]
 fn mean_powers_are_those_of_exponential_decay() {
     // The mean of exp(-t) over 0..1 and over 0..3; equal powers, and none at all, have themselves as their mean.
-    let mean = super::advance::mean_power;
+    let mean = super::model::mean_power;
     for time in [1.0_f64, 3.0, 2e-4, 1e-6] {
         let exact = -(-time).exp_m1() / time;
         assert!((mean(1.0, (-time).exp()) - exact).abs() < 1e-8, "{time}");

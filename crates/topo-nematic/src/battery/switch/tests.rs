@@ -5,10 +5,10 @@ use std::f64::consts::PI;
 use topo_core::Interrupt;
 
 use super::*;
+use crate::anchoring::Plate;
 use crate::tensor::uniaxial;
 use crate::{
-    ChargeSettings, EnergyParts, Material, NematicAccuracy, NematicParameters, Plate, RunHooks,
-    Sides,
+    ChargeSettings, EnergyParts, Material, NematicAccuracy, NematicParameters, RunHooks, Sides,
 };
 
 fn battery(parameters: &NematicParameters) -> NematicBattery {

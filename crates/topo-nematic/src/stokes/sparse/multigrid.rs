@@ -117,6 +117,33 @@ impl Multigrid {
 
 /// Cholesky factor; what lies on walls is the identity.
 fn factor(operator: &Operator) -> Result<SparseCholesky, StokesError> {
+    let (mut diagonal, entries) = entries(operator);
+    if operator.is_singular() {
+        let decay = (0..3).map(|axis| {
+            let wave = std::f64::consts::TAU / operator.cells[axis] as f64;
+            operator.weights[axis] * wave * wave
+        });
+        let shift = SHIFT * decay.fold(f64::INFINITY, f64::min);
+        diagonal.iter_mut().for_each(|d| *d += shift);
+    }
+    let pattern: Vec<(u32, u32)> = entries.iter().map(|&(a, b, _)| (a, b)).collect();
+    let mut matrix = SparseCholesky::new(operator.n(), &pattern)?;
+    for (a, b, value) in entries {
+        if let Some(slot) = matrix.slot(a as usize, b as usize) {
+            matrix.values_mut()[slot] += value;
+        }
+    }
+    for (i, value) in diagonal.into_iter().enumerate() {
+        if let Some(slot) = matrix.slot(i, i) {
+            matrix.values_mut()[slot] += value;
+        }
+    }
+    matrix.factor()?;
+    Ok(matrix)
+}
+
+/// Diagonal of the operator, and its other entries, each pair once.
+fn entries(operator: &Operator) -> (Vec<f64>, Vec<(u32, u32, f64)>) {
     let n_x = operator.cells[0];
     let mut entries: Vec<(u32, u32, f64)> = Vec::new();
     let mut add = |a: usize, b: usize, value: f64| {
@@ -155,28 +182,7 @@ fn factor(operator: &Operator) -> Result<SparseCholesky, StokesError> {
             }
         }
     }
-    if operator.is_singular() {
-        let decay = (0..3).map(|axis| {
-            let wave = std::f64::consts::TAU / operator.cells[axis] as f64;
-            operator.weights[axis] * wave * wave
-        });
-        let shift = SHIFT * decay.fold(f64::INFINITY, f64::min);
-        diagonal.iter_mut().for_each(|d| *d += shift);
-    }
-    let pattern: Vec<(u32, u32)> = entries.iter().map(|&(a, b, _)| (a, b)).collect();
-    let mut matrix = SparseCholesky::new(operator.n(), &pattern)?;
-    for (a, b, value) in entries {
-        if let Some(slot) = matrix.slot(a as usize, b as usize) {
-            matrix.values_mut()[slot] += value;
-        }
-    }
-    for (i, value) in diagonal.into_iter().enumerate() {
-        if let Some(slot) = matrix.slot(i, i) {
-            matrix.values_mut()[slot] += value;
-        }
-    }
-    matrix.factor()?;
-    Ok(matrix)
+    (diagonal, entries)
 }
 
 /// Whether the face at `index` lies on a wall.

@@ -297,7 +297,8 @@ fn what_does_not_fit_a_phase_is_refused() {
     let model = model.model(model.start(), Ends::default()).unwrap();
     let n_dof = model.n_dof();
     assert_eq!(n_dof, 160);
-    let flaws: [(&str, fn(&mut Saved)); 4] = [
+    type Flaw = (&'static str, fn(&mut Saved));
+    let flaws: [Flaw; 4] = [
         ("rod is another", |s| s.1 = s.1.cut_at(3).unwrap()),
         ("time", |s| s.4.parted = Some(1e9)),
         ("samples", |s| s.3.samples.push(s.3.samples[0].clone())),

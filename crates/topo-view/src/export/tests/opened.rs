@@ -26,6 +26,25 @@ fn name(what: &str, k: usize, extension: &str) -> String {
     }
 }
 
+/// The files of defect lines and ring at `times`.
+fn add_lines(case: &Path, times: &[Option<f64>], all: &mut All) {
+    for what in ["lines", "ring"] {
+        let points: Vec<LinePoint> = read_csv(&case.join(format!("{what}.csv"))).unwrap();
+        for (k, time) in times.iter().enumerate() {
+            let here: Vec<&LinePoint> = points.iter().filter(|p| p.time == *time).collect();
+            let lines = here.chunk_by(|a, b| a.line == b.line);
+            let cells = lines.map(|l| if l[0].closed { l.len() } else { l.len() - 1 });
+            let wanted = Wanted {
+                points: here.len(),
+                cells: cells.sum(),
+                arrays: json!({ "angle": 1, "line": 1 }),
+                time: *time,
+            };
+            all.insert(name(what, k, "vtu"), wanted);
+        }
+    }
+}
+
 /// The files of a colloid, counted from its tables.
 fn wanted_of_colloid(case: &Path, particle: bool, flow: bool) -> All {
     let slices: Vec<SlicePoint> = read_csv(&case.join("slices.csv")).unwrap();
@@ -51,21 +70,7 @@ fn wanted_of_colloid(case: &Path, particle: bool, flow: bool) -> All {
         };
         all.insert(name("plane", k, "vti"), wanted);
     }
-    for what in ["lines", "ring"] {
-        let points: Vec<LinePoint> = read_csv(&case.join(format!("{what}.csv"))).unwrap();
-        for (k, time) in times.iter().enumerate() {
-            let here: Vec<&LinePoint> = points.iter().filter(|p| p.time == *time).collect();
-            let lines = here.chunk_by(|a, b| a.line == b.line);
-            let cells = lines.map(|l| if l[0].closed { l.len() } else { l.len() - 1 });
-            let wanted = Wanted {
-                points: here.len(),
-                cells: cells.sum(),
-                arrays: json!({ "angle": 1, "line": 1 }),
-                time: *time,
-            };
-            all.insert(name(what, k, "vtu"), wanted);
-        }
-    }
+    add_lines(case, &times, &mut all);
     if particle {
         let wanted = Wanted {
             points: 49 * 96,
@@ -168,29 +173,16 @@ fn check_series(told: &Value, name: &str, found: &Value) {
 fn python_vtk_opens_every_file_of_every_export() {
     let dir = tempfile::tempdir().unwrap();
     let flowing = format!("{COLLOID}{FLOW}");
+    let colloid = |name: &'static str, text: &str, fields: bool, flow: bool| {
+        (name, colloid(&dir.path().join(name), text, fields), flow)
+    };
     let cases = [
         ("rod", fibre(&dir.path().join("rod")), false),
-        (
-            "still",
-            colloid(&dir.path().join("still"), COLLOID, false),
-            false,
-        ),
-        (
-            "still-fields",
-            colloid(&dir.path().join("still-fields"), COLLOID, true),
-            false,
-        ),
-        (
-            "flow",
-            colloid(&dir.path().join("flow"), &flowing, false),
-            true,
-        ),
-        (
-            "flow-fields",
-            colloid(&dir.path().join("flow-fields"), &flowing, true),
-            true,
-        ),
-        ("cell", colloid(&dir.path().join("cell"), CELL, true), false),
+        colloid("still", COLLOID, false, false),
+        colloid("still-fields", COLLOID, true, false),
+        colloid("flow", &flowing, false, true),
+        colloid("flow-fields", &flowing, true, true),
+        colloid("cell", CELL, true, false),
     ];
     let to: Vec<_> = cases
         .iter()

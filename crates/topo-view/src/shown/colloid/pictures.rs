@@ -6,6 +6,7 @@ use crate::figures::Drawn;
 use crate::figures::nematic::{colloid_at, profile_bar, slice};
 use crate::figures::series::Table;
 use crate::plot::canvas::Canvas;
+use crate::plot::solids::Solids;
 use crate::plot::style::Style;
 use crate::sweeps::groups::evenly;
 use crate::sweeps::{Cases, OwnPicture, Row};
@@ -26,6 +27,23 @@ pub(super) const SLICES: OwnPicture = OwnPicture {
 const MOST: usize = 8;
 const CELL: [f64; 2] = [160.0, 120.0];
 
+/// A charged colloid and its rings; none without a radius.
+fn charged_colloid(
+    cases: &Cases,
+    row: &Row,
+) -> Result<Option<(Solids<'static>, Vec<DefectLine>)>, ViewError> {
+    let Some(radius) = row.number("radius") else {
+        return Ok(None);
+    };
+    let lines = rings(&cases.case_folder(row))?;
+    let charged: Vec<&DefectLine> = lines.iter().filter(|l| l.time.is_none()).collect();
+    // early tables have no pattern: theirs has the winding q
+    let has_winding = matches!(row.text("pattern"), "" | "charge");
+    let q = row.number("q").filter(|_| has_winding).map(|q| q as u32);
+    let solids = colloid_at(radius, q, &charged, None, [-90.0, 22.0]);
+    Ok(Some((solids, lines)))
+}
+
 fn draw_rings(cases: &Cases) -> Result<Option<Drawn>, ViewError> {
     let all: Vec<&Row> = cases
         .first_rows()
@@ -39,19 +57,11 @@ fn draw_rings(cases: &Cases) -> Result<Option<Drawn>, ViewError> {
     let mut shown = Vec::new();
     let mut unit = f64::MAX;
     for k in evenly(all.len(), MOST) {
-        let row = all[k];
-        let Some(radius) = row.number("radius") else {
-            continue;
-        };
-        let lines = rings(&cases.case_folder(row))?;
-        let charged: Vec<&DefectLine> = lines.iter().filter(|l| l.time.is_none()).collect();
-        // early tables have no pattern: theirs has the winding q
-        let has_winding = matches!(row.text("pattern"), "" | "charge");
-        let q = row.number("q").filter(|_| has_winding).map(|q| q as u32);
-        let solids = colloid_at(radius, q, &charged, None, [-90.0, 22.0]);
-        let [x0, y0, x1, y1] = solids.extent();
-        unit = unit.min(CELL[0] / (x1 - x0)).min(CELL[1] / (y1 - y0));
-        shown.push((row, solids, lines));
+        if let Some((solids, lines)) = charged_colloid(cases, all[k])? {
+            let [x0, y0, x1, y1] = solids.extent();
+            unit = unit.min(CELL[0] / (x1 - x0)).min(CELL[1] / (y1 - y0));
+            shown.push((all[k], solids, lines));
+        }
     }
     let across = shown.len().min(4);
     let n_lines = shown.len().div_ceil(4);

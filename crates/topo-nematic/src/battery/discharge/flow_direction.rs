@@ -76,7 +76,8 @@ fn in_fluid(velocity: &MacField, state: &NematicState, mut see: impl FnMut(usize
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Faces, Grid, Particle, uniaxial};
+    use crate::tensor::uniaxial;
+    use crate::{Faces, Grid, Particle};
 
     fn still(with_particle: bool) -> NematicState {
         let faces = [Faces::Periodic, Faces::Periodic, Faces::Wall];

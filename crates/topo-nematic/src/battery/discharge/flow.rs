@@ -3,21 +3,21 @@
 use serde::{Deserialize, Serialize};
 use topo_core::Rejection;
 
-use super::flow_direction::FlowDirection;
-use super::record::FlowReport;
-use super::switch::SwitchedNematic;
+use crate::battery::record::FlowReport;
+use crate::battery::switch::SwitchedNematic;
+use crate::flow::FlowCoupling;
 use crate::flow::FlowMemory;
 use crate::kernel::run::Kernel;
 use crate::real::Real;
 use crate::stabilised::{Drift, DriftMemory, Stabilised};
-use crate::{FlowCoupling, FlowParameters, NematicError, NematicState, StokesError};
+use crate::stokes::StokesError;
+use crate::{FlowParameters, NematicError};
 
 /// The flow of a discharge and what is remembered of it.
 ///
 /// After a refused step the velocity is that of the refused trial: only what [`settle`](Self::settle) kept counts.
 pub(super) struct CoupledFlow {
     pub coupling: FlowCoupling,
-    direction: FlowDirection,
     power: f64,
     max_speed: f64,
     boundary_residual: f64,
@@ -29,7 +29,6 @@ pub(super) struct CoupledFlow {
 pub(super) struct CoupledMemory {
     coupling: FlowMemory,
     drift: Option<DriftMemory>,
-    direction: FlowDirection,
     max_speed: f64,
     boundary_residual: f64,
 }
@@ -37,7 +36,7 @@ pub(super) struct CoupledMemory {
 impl CoupledMemory {
     /// Whether it is one of a field of so many numbers.
     pub fn fits(&self, length: usize) -> bool {
-        self.drift.iter().all(|drift| drift.fits(length)) && self.direction.fits(length / 5)
+        self.drift.iter().all(|drift| drift.fits(length))
     }
 }
 
@@ -55,7 +54,6 @@ impl CoupledFlow {
         )?;
         Ok(Self {
             coupling,
-            direction: FlowDirection::default(),
             power: 0.0,
             max_speed: 0.0,
             boundary_residual: 0.0,
@@ -67,7 +65,6 @@ impl CoupledFlow {
         CoupledMemory {
             coupling: self.coupling.memory(),
             drift: field.drift_memory(),
-            direction: self.direction.clone(),
             max_speed: self.max_speed,
             boundary_residual: self.boundary_residual,
         }
@@ -88,7 +85,6 @@ impl CoupledFlow {
         if let Some(memory) = memory {
             // A checkpoint of this very case fits; were it not so, the flow would start anew.
             is_known = self.coupling.restore(memory.coupling);
-            self.direction = memory.direction;
             self.max_speed = memory.max_speed;
             self.boundary_residual = memory.boundary_residual;
             if let Some(drift) = &memory.drift {
@@ -116,14 +112,9 @@ impl CoupledFlow {
         [before, self.power]
     }
 
-    /// Correlation of the present velocity with the first one looked at, over the fluid of `state`.
-    pub fn direction(&mut self, state: &NematicState) -> Option<f64> {
-        self.direction.correlation(self.coupling.velocity(), state)
-    }
-
     /// Bytes held.
     pub fn n_bytes(&self) -> usize {
-        self.coupling.n_bytes() + self.direction.n_bytes()
+        self.coupling.n_bytes()
     }
 
     pub fn report(&self) -> FlowReport {

@@ -1,8 +1,8 @@
 //! An anchoring that is switched little by little.
 
-use super::switch::{SwitchTarget, SwitchedNematic, blend, extend_into_cut_cells};
 use crate::NematicState;
 use crate::anchoring::Anchoring;
+use crate::battery::switch::{SwitchTarget, SwitchedNematic, blend, extend_into_cut_cells};
 use crate::domain::SpecialCell;
 use crate::kernel::run::{Kernel, Threads};
 use crate::real::Real;

@@ -1,0 +1,335 @@
+//! The nematic battery: charge, switch, discharge.
+
+use std::path::PathBuf;
+
+use numpy::ndarray::{Array, Array2, Array3};
+use numpy::{IntoPyArray, PyArray1, PyArray2};
+use pyo3::exceptions::PyRuntimeError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use topo_analysis::{DischargeTimes, NEMATIC_SHARES};
+use topo_core::{Interrupt, Phase, Progress};
+use topo_nematic::flow::FlowCoupling;
+use topo_nematic::record::NematicSample;
+use topo_nematic::ring::ring_line;
+use topo_nematic::{
+    ChargeSettings, ChargedNematic, DischargeSettings, EnergyParts, FlowParameters,
+    NematicAccuracy, NematicBattery, NematicParameters, NematicState, RunHooks, SwitchSettings,
+    Threads,
+};
+
+use crate::attend::{Leave, Teller, attend};
+use crate::refusal::Refusal;
+use crate::rods::{curve, stop};
+use crate::values::settings;
+
+/// A colloid between plates.
+#[pyclass(frozen)]
+pub struct ColloidBattery(NematicBattery);
+
+/// A file for checkpoints and the seconds between them.
+type Checkpoint = Option<(PathBuf, f64)>;
+
+fn with_file<'a>(hooks: RunHooks<'a>, file: &Checkpoint) -> RunHooks<'a> {
+    match file {
+        Some((path, seconds)) => hooks.with_checkpoint(path, *seconds),
+        None => hooks,
+    }
+}
+
+/// What a run says: how far it is, or the nematic at an output time.
+enum Word {
+    Progress(Progress),
+    Sample(Box<(NematicSample, Option<Points>)>),
+}
+
+type Points = Vec<[f64; 3]>;
+
+impl Word {
+    fn say(self, py: Python<'_>, to: Option<&Bound<'_, PyAny>>) -> PyResult<()> {
+        let Some(to) = to else { return Ok(()) };
+        let said = match self {
+            Self::Progress(p) => progress(py, &p)?,
+            Self::Sample(seen) => {
+                let said = sample(py, &seen.0)?;
+                said.set_item("phase", "discharge")?;
+                said.set_item("ring", seen.1.map(|line| points(py, &line)))?;
+                said
+            }
+        };
+        to.call1((said,)).map(drop)
+    }
+}
+
+fn progress<'py>(py: Python<'py>, p: &Progress) -> PyResult<Bound<'py, PyDict>> {
+    let said = PyDict::new(py);
+    let phase = match p.phase {
+        Phase::Charge => "charge",
+        Phase::FinalState => "final state",
+        Phase::Discharge => "discharge",
+    };
+    said.set_item("phase", phase)?;
+    said.set_item("step", p.step)?;
+    said.set_item("time", p.time)?;
+    said.set_item("energy", p.energy)?;
+    said.set_item("rms_field", p.rms_field)?;
+    Ok(said)
+}
+
+#[pymethods]
+impl ColloidBattery {
+    #[new]
+    fn new(nematic: &Bound<'_, PyDict>, accuracy: &Bound<'_, PyDict>) -> PyResult<Self> {
+        let parameters = settings(&NematicParameters::default(), nematic)?;
+        let accuracy = NematicAccuracy {
+            // results are the same to the bit
+            threads: Threads::All,
+            ..settings(&NematicAccuracy::default(), accuracy)?
+        };
+        let made = NematicBattery::new(&parameters, &accuracy).map_err(Refusal::from)?;
+        Ok(Self(made))
+    }
+
+    #[getter]
+    fn warnings(&self) -> Vec<String> {
+        self.0.warnings().to_vec()
+    }
+
+    #[getter]
+    fn cells(&self) -> [usize; 3] {
+        self.0.grid().cells()
+    }
+
+    /// R²/(Γ L), in τ_N.
+    #[getter]
+    fn diffusion_time(&self) -> f64 {
+        self.0.diffusion_time()
+    }
+
+    /// Lets the nematic relax with the pattern on the particle.
+    fn charge(
+        &self,
+        py: Python<'_>,
+        given: &Bound<'_, PyDict>,
+        observer: Option<Bound<'_, PyAny>>,
+        checkpoint: Checkpoint,
+    ) -> PyResult<ChargedColloid> {
+        let settings: ChargeSettings = settings(&ChargeSettings::default(), given)?;
+        let (interrupt, battery) = (Interrupt::new(), self.0.clone());
+        let (token, wants) = (interrupt.clone(), observer.is_some());
+        let work = move |teller: &Teller<Word, ChargedNematic>| {
+            let mut see = |p: &Progress| teller.tell(Word::Progress(*p));
+            let hooks = with_file(RunHooks::new(&token), &checkpoint);
+            let mut hooks = if wants {
+                hooks.with_progress(&mut see)
+            } else {
+                hooks
+            };
+            Ok(battery.charge(&settings, &mut hooks)?)
+        };
+        let hear = |py: Python<'_>, word: Word| word.say(py, observer.as_ref());
+        Ok(ChargedColloid(attend(
+            py,
+            &interrupt,
+            Leave::WhenKept,
+            hear,
+            work,
+        )?))
+    }
+}
+
+/// A charged colloid.
+#[pyclass(frozen)]
+pub struct ChargedColloid(ChargedNematic);
+
+#[pymethods]
+impl ChargedColloid {
+    /// How it was charged.
+    fn report<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let report = self.0.report();
+        let said = PyDict::new(py);
+        said.set_item("stop", report.stop.to_string())?;
+        said.set_item("finished", report.is_converged())?;
+        said.set_item("n_steps", report.n_steps)?;
+        said.set_item("rms_field", report.rms_field)?;
+        said.set_item("energy", report.energy.total())?;
+        said.set_item("parts", parts(py, &report.energy)?)?;
+        said.set_item("order_parameter", report.order.magnitude())?;
+        said.set_item("azimuth", report.order.azimuth())?;
+        let minimum = report.minimum.as_ref();
+        said.set_item("state", minimum.map(|m| m.state.name()))?;
+        said.set_item("lowest_eigenvalue", minimum.map(|m| m.lowest_eigenvalue))?;
+        Ok(said)
+    }
+
+    /// Mean radius, height, strongest mode and its amplitude of the ring, and its line.
+    fn ring<'py>(&self, py: Python<'py>, threshold: f64) -> PyResult<Option<Bound<'py, PyDict>>> {
+        let Some(ring) = self.0.ring(threshold) else {
+            return Ok(None);
+        };
+        let said = PyDict::new(py);
+        said.set_item("radius", ring.radius)?;
+        said.set_item("height", ring.height)?;
+        said.set_item("mode", ring.mode())?;
+        said.set_item("amplitude", ring.amplitude())?;
+        said.set_item("modes", PyArray1::from_slice(py, &ring.modes))?;
+        let line = ring_line(self.0.state(), threshold).unwrap_or_default();
+        said.set_item("points", points(py, &line))?;
+        Ok(Some(said))
+    }
+
+    fn fields<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        fields(py, self.0.state())
+    }
+
+    fn switch(&self, given: &Bound<'_, PyDict>) -> PyResult<SwitchedColloid> {
+        let settings: SwitchSettings = settings(&SwitchSettings::default(), given)?;
+        Ok(SwitchedColloid(
+            self.0.switch(&settings).map_err(Refusal::from)?,
+        ))
+    }
+}
+
+/// A colloid whose anchoring has just been switched.
+#[pyclass(frozen)]
+pub struct SwitchedColloid(topo_nematic::SwitchedNematic);
+
+/// Rings at output times.
+type Rings = Vec<(f64, Points)>;
+
+#[pymethods]
+impl SwitchedColloid {
+    /// Energies after the switch and removed by it.
+    #[getter]
+    fn energies(&self) -> [f64; 2] {
+        [self.0.start(), self.0.removed()]
+    }
+
+    /// Lets the nematic go.
+    fn discharge<'py>(
+        &self,
+        py: Python<'py>,
+        given: &Bound<'_, PyDict>,
+        flow: bool,
+        observer: Option<Bound<'_, PyAny>>,
+        checkpoint: Checkpoint,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let mut settings: DischargeSettings = settings(&DischargeSettings::default(), given)?;
+        settings.flow = flow.then(FlowParameters::default);
+        let (interrupt, switched) = (Interrupt::new(), self.0.clone());
+        let (token, wants) = (interrupt.clone(), observer.is_some());
+        let work = move |teller: &Teller<Word, (topo_nematic::Discharge, Rings)>| {
+            let mut rings: Rings = Vec::new();
+            let mut see = |s: &NematicSample, state: &NematicState, _: Option<&FlowCoupling>| {
+                let line = ring_line(state, settings.ring_threshold);
+                if wants {
+                    teller.tell(Word::Sample(Box::new((s.clone(), line.clone()))));
+                }
+                rings.extend(line.map(|line| (s.time, line)));
+            };
+            let hooks = RunHooks::new(&token).with_samples(&mut see);
+            let run = switched.discharge(&settings, &mut with_file(hooks, &checkpoint))?;
+            Ok((run, rings))
+        };
+        let hear = |py: Python<'_>, word: Word| word.say(py, observer.as_ref());
+        let (run, rings) = attend(py, &interrupt, Leave::WhenKept, hear, work)?;
+        discharged(py, &run, &rings)
+    }
+}
+
+fn discharged<'py>(
+    py: Python<'py>,
+    run: &topo_nematic::Discharge,
+    rings: &Rings,
+) -> PyResult<Bound<'py, PyDict>> {
+    let said = PyDict::new(py);
+    let (record, report) = (&run.record, &run.record.report);
+    curve(py, &record.curve, &said)?;
+    let energy: Vec<f64> = (0..record.curve.len())
+        .map(|i| record.curve.stored_total(i))
+        .collect();
+    said.set_item("energy", energy.into_pyarray(py))?;
+    let seen: PyResult<Vec<_>> = record.samples.iter().map(|s| sample(py, s)).collect();
+    said.set_item("samples", seen?)?;
+    let rings: Vec<_> = rings
+        .iter()
+        .map(|(t, line)| (*t, points(py, line)))
+        .collect();
+    said.set_item("rings", rings)?;
+    said.set_item("removed", run.removed)?;
+    said.set_item("start", run.start)?;
+    said.set_item("final", run.final_state.energy)?;
+    said.set_item("final_source", run.final_state.source.name())?;
+    said.set_item("stored", run.stored)?;
+    stop(&said, &report.stop)?;
+    said.set_item("n_steps", report.n_steps)?;
+    said.set_item("n_rejected", report.rejections.total())?;
+    said.set_item("ledger_residual", report.ledger_residual)?;
+    said.set_item("max_speed", report.own.flow.as_ref().map(|f| f.max_speed))?;
+    let ends = [run.start, run.final_state.energy];
+    let times = DischargeTimes::between(&record.curve, &EnergyParts::NAMES, ends, &NEMATIC_SHARES);
+    said.set_item(
+        "times",
+        NEMATIC_SHARES.map(|share| (share, times.at(share).map(|t| t.value))),
+    )?;
+    said.set_item("fields", fields(py, &run.state)?)?;
+    Ok(said)
+}
+
+fn parts<'py>(py: Python<'py>, energy: &EnergyParts) -> PyResult<Bound<'py, PyDict>> {
+    let said = PyDict::new(py);
+    for (name, value) in EnergyParts::NAMES.iter().zip(energy.as_array()) {
+        said.set_item(name, value)?;
+    }
+    Ok(said)
+}
+
+fn sample<'py>(py: Python<'py>, s: &NematicSample) -> PyResult<Bound<'py, PyDict>> {
+    let said = PyDict::new(py);
+    said.set_item("time", s.time)?;
+    said.set_item("energy", s.energy.total())?;
+    said.set_item("order_parameter", s.order.magnitude())?;
+    said.set_item("ring_radius", s.ring.as_ref().map(|r| r.radius))?;
+    said.set_item("max_speed", s.max_speed)?;
+    said.set_item("flow_correlation", s.flow_correlation)?;
+    Ok(said)
+}
+
+fn points<'py>(py: Python<'py>, line: &[[f64; 3]]) -> Bound<'py, PyArray2<f64>> {
+    let flat: Vec<f64> = line.iter().flatten().copied().collect();
+    Array2::from_shape_vec((line.len(), 3), flat)
+        .unwrap_or_default()
+        .into_pyarray(py)
+}
+
+/// Order, director, tensor and fluid of every cell, z first and x last, and where the first cell lies.
+fn fields<'py>(py: Python<'py>, state: &NematicState) -> PyResult<Bound<'py, PyDict>> {
+    let grid = state.grid();
+    let [nx, ny, nz] = grid.cells();
+    let wrong = |e: numpy::ndarray::ShapeError| PyRuntimeError::new_err(e.to_string());
+    let (order, director, fluid) = py.detach(|| {
+        let mut fluid = Vec::with_capacity(grid.n_cells());
+        for k in 0..nz {
+            for j in 0..ny {
+                fluid.extend((0..nx).map(|i| state.is_fluid([i, j, k])));
+            }
+        }
+        let director: Vec<f64> = state.director_field().into_iter().flatten().collect();
+        (state.order_field(), director, fluid)
+    });
+    let said = PyDict::new(py);
+    let shape = (nz, ny, nx);
+    let order = Array3::from_shape_vec(shape, order).map_err(wrong)?;
+    said.set_item("order", order.into_pyarray(py))?;
+    let director = Array::from_shape_vec((nz, ny, nx, 3), director).map_err(wrong)?;
+    said.set_item("director", director.into_pyarray(py))?;
+    let tensor = Array::from_shape_vec((5, nz, ny, nx), state.q_tensor().to_vec());
+    said.set_item("q_tensor", tensor.map_err(wrong)?.into_pyarray(py))?;
+    let fluid = Array3::from_shape_vec(shape, fluid).map_err(wrong)?;
+    said.set_item("fluid", fluid.into_pyarray(py))?;
+    let centre = state.particle().map_or([0.0; 3], |p| p.centre());
+    let first = grid.centre([0, 0, 0]);
+    said.set_item("origin", [0, 1, 2].map(|a| first[a] - centre[a]))?;
+    said.set_item("spacing", grid.spacing())?;
+    Ok(said)
+}

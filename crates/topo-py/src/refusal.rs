@@ -1,0 +1,237 @@
+//! Errors on their way to Python: which class, which file, key and value, and what would be right.
+
+use pyo3::exceptions::{PyFileNotFoundError, PyOSError};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use topo_core::{CurveError, InvalidValue};
+use topo_knots::KnotError;
+use topo_lab::LabError;
+use topo_nematic::NematicError;
+use topo_rod::RodError;
+
+/// Classes of `topobatteries.errors`, and those of Python for files.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+enum Class {
+    #[default]
+    Topo,
+    Scene,
+    Knot,
+    NoFile,
+    File,
+}
+
+/// What was refused and why, away from the interpreter.
+#[derive(Debug, Clone, Default)]
+pub struct Refusal {
+    class: Class,
+    message: String,
+    file: Option<String>,
+    line: Option<usize>,
+    key: Option<String>,
+    value: Option<String>,
+    remedy: Option<String>,
+}
+
+impl Refusal {
+    /// A value of an argument that cannot be.
+    pub fn value(key: &str, value: impl ToString, remedy: &str) -> Self {
+        let value = value.to_string();
+        Self {
+            message: format!("{key} = {value}: {remedy}"),
+            key: Some(key.to_owned()),
+            value: Some(value),
+            remedy: Some(remedy.to_owned()),
+            ..Self::default()
+        }
+    }
+
+    fn says(class: Class, error: &dyn std::error::Error) -> Self {
+        let message = error.to_string();
+        Self {
+            class,
+            message,
+            ..Self::default()
+        }
+    }
+
+    /// A file that is no scene: the parser's message shows the line, and what stands in it.
+    fn no_scene(path: &std::path::Path, message: &str, whole: String) -> Self {
+        let place = message.split_once("at line ").map(|(_, rest)| rest);
+        let digits = |text: &str| {
+            text.split(|c: char| !c.is_ascii_digit())
+                .next()?
+                .parse()
+                .ok()
+        };
+        let line: Option<usize> = place.and_then(digits);
+        let shown = message.lines().find_map(|text| {
+            let (number, shown) = text.split_once(" | ")?;
+            number.trim().parse::<usize>().ok()?;
+            Some(shown.trim().to_owned())
+        });
+        let (key, value) = match shown.as_deref().and_then(|text| text.split_once('=')) {
+            Some((key, value)) => (Some(key.trim().to_owned()), Some(value.trim().to_owned())),
+            None => (shown, None),
+        };
+        Self {
+            class: Class::Scene,
+            message: whole,
+            file: Some(path.display().to_string()),
+            line,
+            key,
+            value,
+            remedy: message.trim_end().lines().last().map(str::to_owned),
+        }
+    }
+}
+
+impl From<InvalidValue> for Refusal {
+    fn from(error: InvalidValue) -> Self {
+        let message = error.to_string();
+        let remedy = format!("expected {}", error.expected);
+        Self {
+            message,
+            ..Self::value(&error.name, error.value, &remedy)
+        }
+    }
+}
+
+impl From<CurveError> for Refusal {
+    fn from(error: CurveError) -> Self {
+        match error {
+            CurveError::Value(value) => value.into(),
+            other => Self::says(Class::Topo, &other),
+        }
+    }
+}
+
+impl From<RodError> for Refusal {
+    fn from(error: RodError) -> Self {
+        match error {
+            RodError::Value(value) => value.into(),
+            other => Self::says(Class::Topo, &other),
+        }
+    }
+}
+
+impl From<NematicError> for Refusal {
+    fn from(error: NematicError) -> Self {
+        match error {
+            NematicError::Value(value) => value.into(),
+            other => Self::says(Class::Topo, &other),
+        }
+    }
+}
+
+impl From<KnotError> for Refusal {
+    fn from(error: KnotError) -> Self {
+        let class = match &error {
+            KnotError::Io { source, .. } if source.kind() == std::io::ErrorKind::NotFound => {
+                Class::NoFile
+            }
+            KnotError::Io { .. } => Class::File,
+            _ => Class::Knot,
+        };
+        let name = match &error {
+            KnotError::UnknownKnot { name, .. } => Some(name.clone()),
+            _ => None,
+        };
+        Self {
+            value: name,
+            ..Self::says(class, &error)
+        }
+    }
+}
+
+impl From<LabError> for Refusal {
+    fn from(error: LabError) -> Self {
+        let whole = error.to_string();
+        let scene = Self {
+            class: Class::Scene,
+            message: whole.clone(),
+            ..Self::default()
+        };
+        match error {
+            LabError::SceneValue {
+                path,
+                line,
+                key,
+                value,
+                remedy,
+            } => Self {
+                file: Some(path.display().to_string()),
+                line,
+                key: Some(key),
+                value: Some(value),
+                remedy: Some(remedy),
+                ..scene
+            },
+            LabError::Scene { path, message } => Self::no_scene(&path, &message, whole),
+            LabError::SceneName { path, reason } => Self {
+                file: Some(path.display().to_string()),
+                remedy: Some(reason),
+                ..scene
+            },
+            LabError::Option {
+                option,
+                value,
+                remedy,
+            } => Self {
+                class: Class::Scene,
+                ..Self::value(option.trim_start_matches('-'), value, &remedy)
+            },
+            LabError::Wish { wish, reason } => Self {
+                value: Some(wish),
+                remedy: Some(reason),
+                ..scene
+            },
+            LabError::Unreadable { source, .. }
+                if source.kind() == std::io::ErrorKind::NotFound =>
+            {
+                Self {
+                    class: Class::NoFile,
+                    ..scene
+                }
+            }
+            LabError::Unreadable { .. } | LabError::File(_) | LabError::Output { .. } => Self {
+                class: Class::File,
+                ..scene
+            },
+            LabError::OtherScene { .. } => scene,
+            LabError::Knot(source) => source.into(),
+            _ => Self {
+                class: Class::Topo,
+                ..scene
+            },
+        }
+    }
+}
+
+impl From<Refusal> for PyErr {
+    fn from(refusal: Refusal) -> Self {
+        match refusal.class {
+            Class::NoFile => PyFileNotFoundError::new_err(refusal.message),
+            Class::File => PyOSError::new_err(refusal.message),
+            _ => Python::attach(|py| refusal.raised(py).unwrap_or_else(|error| error)),
+        }
+    }
+}
+
+impl Refusal {
+    fn raised(self, py: Python<'_>) -> PyResult<PyErr> {
+        let class = match self.class {
+            Class::Scene => "SceneError",
+            Class::Knot => "KnotError",
+            _ => "TopoError",
+        };
+        let fields = PyDict::new(py);
+        fields.set_item("file", self.file)?;
+        fields.set_item("line", self.line)?;
+        fields.set_item("key", self.key)?;
+        fields.set_item("value", self.value)?;
+        fields.set_item("remedy", self.remedy)?;
+        let class = py.import("topobatteries.errors")?.getattr(class)?;
+        let error = class.call((self.message,), Some(&fields))?;
+        Ok(PyErr::from_value(error))
+    }
+}

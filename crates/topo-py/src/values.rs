@@ -1,0 +1,78 @@
+//! Dictionaries of Python as tables of TOML, and as settings.
+
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString, PyTuple};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use toml::{Table, Value};
+
+use crate::refusal::Refusal;
+
+/// A dictionary as a table; a key whose value is `None` is left out. `place` is what stands before the keys in messages.
+pub fn table(dict: &Bound<'_, PyDict>, place: &str) -> PyResult<Table> {
+    let mut table = Table::new();
+    for (key, value) in dict {
+        let name = key.extract::<String>().map_err(|_| {
+            PyTypeError::new_err(format!("{place}{key}: keys are names, give a string"))
+        })?;
+        if let Some(value) = value_of(&value, &format!("{place}{name}"))? {
+            table.insert(name, value);
+        }
+    }
+    Ok(table)
+}
+
+fn value_of(value: &Bound<'_, PyAny>, key: &str) -> PyResult<Option<Value>> {
+    if value.is_none() {
+        return Ok(None);
+    }
+    // arrays and scalars of numpy
+    if value.hasattr("tolist")? {
+        return value_of(&value.call_method0("tolist")?, key);
+    }
+    let all = |items: Bound<'_, PyAny>| -> PyResult<Value> {
+        let values: PyResult<Vec<_>> = items.try_iter()?.map(|v| value_of(&v?, key)).collect();
+        Ok(Value::Array(values?.into_iter().flatten().collect()))
+    };
+    Ok(Some(if value.is_instance_of::<PyBool>() {
+        Value::Boolean(value.extract()?)
+    } else if value.is_instance_of::<PyInt>() {
+        Value::Integer(value.extract()?)
+    } else if value.is_instance_of::<PyFloat>() {
+        Value::Float(value.extract()?)
+    } else if value.is_instance_of::<PyString>() {
+        Value::String(value.extract()?)
+    } else if let Ok(dict) = value.cast::<PyDict>() {
+        Value::Table(table(dict, &format!("{key}."))?)
+    } else if value.is_instance_of::<PyList>() || value.is_instance_of::<PyTuple>() {
+        all(value.clone())?
+    } else {
+        let kind = value.get_type().name()?;
+        return Err(PyTypeError::new_err(format!(
+            "{key} is of type {kind}: give a number, a name, a list or a dictionary"
+        )));
+    }))
+}
+
+/// `defaults` with what `given` says instead; a key whose value is `None` is taken out.
+pub fn settings<T: Serialize + DeserializeOwned>(
+    defaults: &T,
+    given: &Bound<'_, PyDict>,
+) -> PyResult<T> {
+    let mut all = Table::try_from(defaults).map_err(|e| PyTypeError::new_err(e.to_string()))?;
+    for (key, value) in given {
+        if value.is_none() {
+            all.remove(&key.extract::<String>()?);
+        }
+    }
+    all.extend(table(given, "")?);
+    // "unknown field `radiu`, expected ..." names its key
+    let wrong = |e: toml::de::Error| {
+        let key = e.message().split('`').nth(1).unwrap_or("settings");
+        let value = given.get_item(key).ok().flatten();
+        let value = value.map_or_else(|| given.to_string(), |value| value.to_string());
+        Refusal::value(key, value, e.message()).into()
+    };
+    all.try_into().map_err(wrong)
+}
