@@ -67,7 +67,7 @@ pub fn settings<T: Serialize + DeserializeOwned>(
         }
     }
     all.extend(table(given, "")?);
-    // "unknown field `radiu`, expected ..." names its key
+    // "unknown field `q0`, expected ..." names its key
     let wrong = |e: toml::de::Error| {
         let key = e.message().split('`').nth(1).unwrap_or("settings");
         let value = given.get_item(key).ok().flatten();
