@@ -106,10 +106,10 @@ pub fn docs(target: &Path) -> Result<(), CliError> {
     build.args(["-m", "mkdocs", "build", "--strict", "--quiet", "--site-dir"]);
     build.arg(target.join("site")).current_dir(workspace());
     match step("site", build, |_| {})? {
-        true => Ok(topo_cli::say!(
-            "written to {}",
-            target.join("site/index.html").display()
-        )),
+        true => {
+            topo_cli::say!("written to {}", target.join("site/index.html").display());
+            Ok(())
+        }
         false => Err(CliError::Step("the site cannot be built".to_owned())),
     }
 }
