@@ -150,7 +150,11 @@ pub fn all(long: bool) -> Result<Report, CliError> {
         report.counts.outcome(went);
         report.ok &= went;
     }
-    let program = std::env::current_exe().unwrap_or_default();
+    // made by the tests' build, which may have replaced the file of this program
+    let name = format!("topo{}", std::env::consts::EXE_SUFFIX);
+    let program = std::env::current_exe()
+        .unwrap_or_default()
+        .with_file_name(name);
     match python::test(&target(), &program, long)? {
         Tested::Ran(counts, ok) => {
             report.counts.add_all(counts);
