@@ -174,11 +174,7 @@ impl<'a, F: ?Sized> RunHooks<'a, F> {
         case: &str,
         value: &T,
     ) -> Result<(), FileError> {
-        let Some(path) = self.checkpoint.clone() else {
-            return Ok(());
-        };
-        let bytes = checkpoint_bytes(&path, schema, &(case, value))?;
-        self.finished.push((path, bytes));
+        self.put(schema, case, value)?;
         self.write()
     }
 
@@ -192,12 +188,17 @@ impl<'a, F: ?Sized> RunHooks<'a, F> {
         case: &str,
         value: &T,
     ) -> Result<(), FileError> {
-        let Some(path) = self.checkpoint.clone() else {
-            return Ok(());
-        };
-        let bytes = checkpoint_bytes(&path, schema, &(case, value))?;
-        self.finished.push((path, bytes));
+        self.put(schema, case, value)?;
         if self.is_due() { self.write() } else { Ok(()) }
+    }
+
+    /// Puts what a phase remembers with what is to be written, where there is a file for it.
+    fn put<T: Serialize>(&mut self, schema: &str, case: &str, value: &T) -> Result<(), FileError> {
+        if let Some(path) = &self.checkpoint {
+            let bytes = checkpoint_bytes(path, schema, &(case, value))?;
+            self.finished.push((path.clone(), bytes));
+        }
+        Ok(())
     }
 
     fn write(&mut self) -> Result<(), FileError> {
