@@ -57,7 +57,7 @@ fn colloid() -> NematicParameters {
         radius: 4.5,
         spacing: 1.5,
         cell: [4.0, 4.0, 4.0],
-        pattern: SurfacePattern::Charge(2),
+        pattern: SurfacePattern::Winding(2),
         ..NematicParameters::default()
     }
 }

@@ -15,7 +15,7 @@ use topo_tests::threads::on_threads;
 fn small(charge: i32) -> NematicParameters {
     NematicParameters {
         radius: 7.5,
-        pattern: SurfacePattern::Charge(charge),
+        pattern: SurfacePattern::Winding(charge),
         ..Default::default()
     }
 }
@@ -421,7 +421,7 @@ fn law_buckling_starts_at_the_published_charge_of_a_small_particle() {
     for (charge, energy, buckled) in [(4_i32, 573.1, false), (9, 832.6, false), (10, 869.8, true)] {
         let parameters = NematicParameters {
             radius: 15.0,
-            pattern: SurfacePattern::Charge(charge),
+            pattern: SurfacePattern::Winding(charge),
             ..Default::default()
         };
         let charged = charge_of(&parameters, &NematicAccuracy::default());
@@ -486,7 +486,7 @@ fn law_node_mask_reads_lower_than_cut_links() {
     let parameters = NematicParameters {
         boundary: Boundary::NodeMask,
         radius: 15.0,
-        pattern: SurfacePattern::Charge(4),
+        pattern: SurfacePattern::Winding(4),
         ..Default::default()
     };
     let energy = charge_of(&parameters, &NematicAccuracy::default())
@@ -514,8 +514,8 @@ fn law_bad_input_is_refused_by_name_and_odd_input_warned_of() {
     assert!(message(&|p| p.radius = 1e9).contains("too large"));
     let warning =
         |change: &dyn Fn(&mut NematicParameters)| build(change).unwrap().warnings().join("; ");
-    assert!(warning(&|p| p.pattern = SurfacePattern::Charge(200)).contains("under-resolved"));
-    assert!(warning(&|p| p.pattern = SurfacePattern::Charge(0)).contains("charge 0"));
+    assert!(warning(&|p| p.pattern = SurfacePattern::Winding(200)).contains("under-resolved"));
+    assert!(warning(&|p| p.pattern = SurfacePattern::Winding(0)).contains("charge 0"));
     assert!(warning(&|p| p.material.a = 0.11).contains("metastable"));
     assert!(warning(&|p| p.cells = Some([29, 28, 28])).contains("odd number"));
     assert_eq!(warning(&|_| {}), "");

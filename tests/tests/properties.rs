@@ -210,20 +210,20 @@ fn judge<E: std::fmt::Display>(
             prop_assert_eq!(second.map_err(|e| e.to_string()), Ok(written));
         }
         Err(error) => {
-            let told = error.to_string();
+            let message = error.to_string();
             // Dashes and underlines are one to whoever looks for a key.
             let keys: Vec<String> = text
                 .lines()
                 .filter_map(|line| line.split_once(" = "))
                 .map(|(key, _)| key.replace('_', "-"))
                 .collect();
-            let plain = told.replace('_', "-");
+            let plain = message.replace('_', "-");
             // Several keys decide together whether there is a nematic phase, and how fine the grid must be.
             let derived = ["spacing", "nematic phase"];
             prop_assert!(
                 keys.iter().any(|key| plain.contains(key.as_str()))
                     || derived.iter().any(|word| plain.contains(word)),
-                "{text}\n{told}"
+                "{text}\n{message}"
             );
         }
     }

@@ -12,7 +12,7 @@ use topo_nematic::{
 fn small(charge: i32) -> NematicParameters {
     NematicParameters {
         radius: 6.0,
-        pattern: SurfacePattern::Charge(charge),
+        pattern: SurfacePattern::Winding(charge),
         ..Default::default()
     }
 }
@@ -95,7 +95,7 @@ fn law_ramps_to_another_pattern_end_in_its_charged_state() {
     let (two, one) = (charge(&small(2)), charge(&small(1)));
     let goal = one.energy().total();
     for ramp in [None, Some(5.0)] {
-        let run = discharge(&two, &to_pattern(SurfacePattern::Charge(1), ramp));
+        let run = discharge(&two, &to_pattern(SurfacePattern::Winding(1), ramp));
         assert!(run.is_finished(), "{ramp:?} {:?}", run.record.report.stop);
         assert!(
             (run.final_state.energy / goal - 1.0).abs() < 1e-9,
@@ -105,7 +105,7 @@ fn law_ramps_to_another_pattern_end_in_its_charged_state() {
         assert!(run.record.report.ledger_residual < 0.01);
     }
     // Up the other way work is done and nothing is released; the run still ends, where it relaxes to.
-    let up = discharge(&one, &to_pattern(SurfacePattern::Charge(2), Some(5.0)));
+    let up = discharge(&one, &to_pattern(SurfacePattern::Winding(2), Some(5.0)));
     assert!(up.is_finished() && up.stored.unwrap() < 0.0);
     assert!((up.final_state.energy / two.energy().total() - 1.0).abs() < 1e-9);
     assert_eq!(times(&up), [None, None]);

@@ -131,7 +131,7 @@ fn val_a_tilt_between_plates_discharges_at_the_times_of_its_series() {
 fn staircase(charge: i32) -> ([f64; 4], f64) {
     let parameters = NematicParameters {
         radius: 25.0,
-        pattern: SurfacePattern::Charge(charge),
+        pattern: SurfacePattern::Winding(charge),
         ..Default::default()
     };
     let battery = NematicBattery::new(&parameters, &NematicAccuracy::default()).unwrap();

@@ -220,7 +220,7 @@ fn harmonic(n: f64, edge: f64, pattern: SurfacePattern) -> NematicParameters {
 #[test]
 fn val_radial_sphere_has_the_harmonic_field_its_ring_and_its_energy() {
     let solve = |n: f64| {
-        let parameters = harmonic(n, 4.0, SurfacePattern::Charge(1));
+        let parameters = harmonic(n, 4.0, SurfacePattern::Winding(1));
         // Without bulk terms there is no correlation length that the spacing could miss.
         let mut battery = NematicBattery::new(&parameters, &accurate(1e-6)).unwrap();
         let (extent, s) = (battery.grid().extent(), 1.0);
@@ -341,7 +341,7 @@ fn missed_by_differences(state: &NematicState, charge: i32, radius: f64) -> f64 
 /// (F + b/edge)/(1 - alpha/edge), linear in its three unknowns.
 fn patterned_energy(charge: i32, n: f64) -> [f64; 2] {
     let boxes = [3.6, 4.8, 6.4].map(|edge| {
-        let parameters = harmonic(n, edge, SurfacePattern::Charge(charge));
+        let parameters = harmonic(n, edge, SurfacePattern::Winding(charge));
         let battery = NematicBattery::new(&parameters, &accurate(1e-6)).unwrap();
         let start = battery.start(0.0, 0.0).unwrap();
         let charged = relax(&battery, &start, 1e-7);

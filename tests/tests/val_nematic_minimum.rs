@@ -141,14 +141,14 @@ fn law_a_charge_stopped_in_its_check_or_after_a_kick_goes_on_to_the_same_bits() 
         let path = folder.path().join("charge.checkpoint");
         let stop = Interrupt::new();
         let mut n_told = 0;
-        let mut told = |_: &Progress| {
+        let mut note_step = |_: &Progress| {
             n_told += 1;
             if n_told == stop_at {
                 stop.request();
             }
         };
         let mut hooks = RunHooks::new(&stop)
-            .with_progress(&mut told)
+            .with_progress(&mut note_step)
             .with_checkpoint(&path, 1e6);
         let part = battery.charge(&settings, &mut hooks).unwrap();
         assert_eq!(part.report().stop, ChargeStop::Interrupted, "{stop_at}");
@@ -183,7 +183,7 @@ fn law_low_order_elsewhere_is_no_ring() {
     assert_eq!(charge(&walled, 0.05, Threads::One).ring(0.35), None);
     let ringed = NematicParameters {
         sides: Sides::Periodic,
-        pattern: SurfacePattern::Charge(1),
+        pattern: SurfacePattern::Winding(1),
         ..walled
     };
     let ring = charge(&ringed, 0.05, Threads::One).ring(0.35).unwrap();

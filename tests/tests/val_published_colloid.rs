@@ -85,7 +85,7 @@ fn val_published_pattern() {
             theta.sin() * turn.sin(),
             theta.cos(),
         ];
-        let found = SurfacePattern::Charge(q).q_tensor(0.6, place);
+        let found = SurfacePattern::Winding(q).q_tensor(0.6, place);
         let pairs = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2)];
         for ((a, b), x) in pairs.into_iter().zip(found) {
             let third = if a == b { 1.0 / 3.0 } else { 0.0 };
@@ -204,7 +204,7 @@ fn val_published_sweeps() {
         for case in scene.cases() {
             let expected = NematicParameters {
                 radius,
-                pattern: SurfacePattern::Charge(case.q as i32),
+                pattern: SurfacePattern::Winding(case.q as i32),
                 ..Default::default()
             };
             assert_eq!(case.nematic, expected, "{preset:?}");
@@ -237,7 +237,7 @@ fn law_units_scale_out_of_a_discharge_with_flow() {
         let parameters = NematicParameters {
             radius: 6.0 * l,
             spacing: 1.5 * l,
-            pattern: SurfacePattern::Charge(2),
+            pattern: SurfacePattern::Winding(2),
             material,
             ..Default::default()
         };

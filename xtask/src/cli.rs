@@ -139,7 +139,7 @@ pub struct CostArgs {
 pub struct TradeoffArgs {
     #[command(flatten)]
     pub systems: SystemsArgs,
-    /// Run the settings of scenes by wish on another set of cases: `factor` (which scales their estimates of the error) or `check` (how well these hold).
+    /// Run the settings of scenes with a goal on another set of cases: `factor` (which scales their estimates of the error) or `check` (how well these hold).
     #[arg(long, value_name = "SET", value_parser = ["factor", "check"], conflicts_with = "quality")]
     pub set: Option<String>,
     /// Keep what was measured: the table from which scenes with `accuracy` or `budget` take their settings (with --quality standard), the factor of their estimates (with --set factor), and the tables of docs/tradeoff.md.

@@ -10,10 +10,10 @@ fn determinism(arguments: &[&str], out: &Path) -> Output {
 }
 
 fn agrees(output: &Output) {
-    let told = String::from_utf8_lossy(&output.stdout);
+    let stdout = String::from_utf8_lossy(&output.stdout);
     let errors = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{told}\n{errors}");
-    assert_eq!(told.matches(" 0 differ").count(), 2, "{told}");
+    assert!(output.status.success(), "{stdout}\n{errors}");
+    assert_eq!(stdout.matches(" 0 differ").count(), 2, "{stdout}");
 }
 
 #[test]

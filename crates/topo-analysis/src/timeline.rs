@@ -11,7 +11,7 @@ use crate::AnalysisError;
 pub struct TypedSample {
     /// Index of the sample that was typed.
     pub sample: usize,
-    /// Its time.
+    /// Its time, in the unit of the samples given.
     pub time: f64,
     /// Most frequent type over the closures, by the hand that is more frequent.
     pub knot: String,

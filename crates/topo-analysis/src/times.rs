@@ -6,7 +6,7 @@ use topo_core::DischargeCurve;
 /// A time with the error of interpolating it between two steps.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Interpolated {
-    /// The time.
+    /// The time, in the unit of the curve.
     pub value: f64,
     /// Difference of the exponential and the linear interpolation between the two steps around it.
     pub error: f64,

@@ -1,6 +1,6 @@
 //! Where commands meet the physics: the tables behind figures, and a user's own scene.
 
-mod by_wish;
+mod by_goal;
 pub mod estimate;
 mod order;
 mod report;
@@ -82,15 +82,15 @@ fn knots(
     let names = scene.knots_used(table)?;
     let more = more_knots(order.quality, &names, table);
     let progress = Progress::start("knots", names.len() + more.len());
-    let told = |event: Event<'_>| {
+    let report = |event: Event<'_>| {
         if let Event::Knot { name, .. } = event {
             progress.done(name);
         }
     };
     let shapes = with_jobs(order.jobs, || {
-        let mut shapes = tight_shapes(&names, table, &scene.tighten, order.results, stop, &told)?;
+        let mut shapes = tight_shapes(&names, table, &scene.tighten, order.results, stop, &report)?;
         let standard = TightenSettings::standard();
-        let more = tight_shapes(&more, table, &standard, order.results, stop, &told)?;
+        let more = tight_shapes(&more, table, &standard, order.results, stop, &report)?;
         shapes.extend(more);
         Ok::<_, LabError>(shapes)
     })??;

@@ -38,7 +38,7 @@ pub enum CliError {
     /// A knot or a curve was refused.
     #[error(transparent)]
     Knot(#[from] topo_knots::KnotError),
-    /// What was asked for cannot be had; the text says why.
+    /// What was asked for is not possible; the text says why.
     #[error("{0}")]
     Input(String),
     /// A tool that a command runs failed.

@@ -17,7 +17,7 @@ pub use progress::{Phase, Progress};
 /// More steps than any run takes: counters beyond it come from a broken file.
 pub const MOST_COUNTED: u64 = 1 << 53;
 
-/// Seconds between two checkpoints, unless told otherwise.
+/// Seconds between two checkpoints, unless set otherwise.
 const INTERVAL: Duration = Duration::from_secs(30);
 
 type ProgressFn<'a> = dyn FnMut(&Progress) + 'a;
@@ -282,10 +282,10 @@ mod tests {
     #[test]
     fn progress_and_samples_reach_their_functions() {
         let (mut steps, mut seen) = (Vec::new(), Vec::new());
-        let mut told = |p: &Progress| steps.push(p.step);
+        let mut note_step = |p: &Progress| steps.push(p.step);
         let mut see = |x: f64| seen.push(x);
         let mut hooks = Hooks::default()
-            .with_progress(&mut told)
+            .with_progress(&mut note_step)
             .with_samples(&mut see);
         assert!(hooks.wants_progress());
         hooks.report(&Progress {

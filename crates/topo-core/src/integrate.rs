@@ -29,7 +29,7 @@ pub trait Model {
     /// Writes F(`state`) to `rate`; F does not depend on time.
     ///
     /// # Errors
-    /// A [`Rejection`] when the rate cannot be had at this state.
+    /// A [`Rejection`] when there is no rate at this state.
     fn rate(&mut self, state: &Self::State, rate: &mut [f64]) -> Result<(), Rejection>;
 
     /// Writes to `to` the state reached from `from` by the finite `step`; `to` holds an unrelated earlier state before.

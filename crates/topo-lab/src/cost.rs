@@ -239,8 +239,8 @@ mod tests {
         assert_eq!(Speed::of(&ROD_PROBE, &[(1.0, 9.0), (1.0, 9.0)]), probed);
         let finished = [(1.0, 2.0), (2.0, 4.0), (1.0, 50.0), (0.0, 3.0)];
         let slow = Speed::of(&ROD_PROBE, &finished);
-        let told = estimate(&[ONE], slow, 1, true);
-        assert_eq!((told.cpu_seconds, told.n_calibrated), (20.0, 3));
-        assert!(told.wall_seconds >= told.cpu_seconds);
+        let estimated = estimate(&[ONE], slow, 1, true);
+        assert_eq!((estimated.cpu_seconds, estimated.n_calibrated), (20.0, 3));
+        assert!(estimated.wall_seconds >= estimated.cpu_seconds);
     }
 }

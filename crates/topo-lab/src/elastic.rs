@@ -2,8 +2,9 @@
 
 mod accuracy;
 mod battery;
-mod by_wish;
+mod by_goal;
 mod case;
+mod case_run;
 mod check;
 mod choices;
 mod cost;
@@ -12,7 +13,6 @@ mod file;
 mod frames;
 mod identity;
 mod imperfection;
-mod job;
 mod keys;
 mod name;
 mod observable;
@@ -30,11 +30,11 @@ pub use accuracy::{ACCURACY_CASES, AccuracyRow, measure_accuracy, reference_scen
 pub(crate) use accuracy::{MeasuredDischarge, exact_discharge, measured_discharge};
 pub use battery::Elastic;
 pub use case::ElasticCase;
+pub(crate) use case_run::CaseInputs;
 pub use choices::{Cuts, NEAR_TIE, Names};
 pub use frames::{ShapeFrame, discharge_frames};
 pub use identity::RESULTS_VERSION;
 pub use imperfection::perturbed;
-pub(crate) use job::CaseJob;
 pub use observable::Observable;
 pub use own_term::OwnTerm;
 pub(crate) use probe::ROD_PROBE;

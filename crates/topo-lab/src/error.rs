@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-/// A scene, a case or a table cannot be had as asked; the message says what, where, and what would be right.
+/// A scene, a case or a table cannot be made as asked; the message says what, where, and what would be right.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum LabError {
@@ -46,12 +46,12 @@ pub enum LabError {
         /// Why.
         reason: String,
     },
-    /// No measured setting grants what a scene asks for.
-    #[error("{wish} cannot be had: {reason}")]
-    Wish {
+    /// No measured setting meets what a scene asks for.
+    #[error("{goal} is not possible: {reason}")]
+    Goal {
         /// What was asked for.
-        wish: String,
-        /// What can be had.
+        goal: String,
+        /// What is possible.
         reason: String,
     },
     /// An option of the command line does not apply to a scene, or has a value that cannot be.
@@ -88,7 +88,7 @@ pub enum LabError {
         /// Why.
         source: topo_nematic::NematicError,
     },
-    /// A knot is unknown, or its shape cannot be had.
+    /// A knot is unknown, or its shape cannot be found.
     #[error(transparent)]
     Knot(#[from] topo_knots::KnotError),
     /// A quantity of the caller's own cannot be a column.

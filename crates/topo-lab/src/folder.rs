@@ -172,7 +172,7 @@ const NO_ROWS: &str = "its run.json has no rows";
 
 /// What is left of a case in `folder`; usable only with the same identity.
 ///
-/// `version` is the results version of now; a file of another one is told apart from one of other settings.
+/// `version` is the results version of now; a file of another one is distinguished from one of other settings.
 pub(crate) fn finished<T: DeserializeOwned>(
     folder: &Path,
     fingerprint: &str,

@@ -3,7 +3,7 @@
 //! Reading order: [`Battery`] (what a program lists) → [`Scene`] (what a TOML file says) → [`Experiment`] (its cases) → [`Sweep`] (in
 //! parallel, resumable, into one table). [`Elastic`] fills them with [`ElasticScene`] and [`topo_analysis::SweepRow`], [`Colloid`] with
 //! [`NematicScene`] and [`topo_analysis::NematicRow`]; a battery of another crate does the same. Then what is
-//! made of many runs: [`tradeoff`] (what accuracy costs) and [`Wish`] (settings picked by it), [`stability`] (extremes), [`term_costs`].
+//! made of many runs: [`tradeoff`] (what accuracy costs) and [`Goal`] (settings picked by it), [`stability`] (extremes), [`term_costs`].
 //!
 //! Elastic energies are in E_0 = E_b h² L and times in T_0 = 2 L η/(h E_b), with L the row's own length; nematic energies in
 //! L ξ_N and times in τ_N.
@@ -13,6 +13,7 @@ mod cost;
 mod elastic;
 mod error;
 mod folder;
+mod goal;
 mod knots;
 mod nematic;
 mod preset;
@@ -23,7 +24,6 @@ mod sweep;
 mod system;
 mod terms;
 mod tradeoff;
-mod wish;
 
 pub use battery::{Battery, Checked, Options, Scene, Stage, Sweep, Swept, parse_scene, read_scene};
 pub use cost::{Cost, Estimate, Probe};
@@ -34,6 +34,10 @@ pub use elastic::{
 };
 pub use error::LabError;
 pub use folder::{Outcome, identity, writable};
+pub use goal::{
+    CheckRow, Choice, Cover, ErrorKind, ErrorRow, Factor, Goal, Measured, Point, Record, Stamp,
+    check_estimates, errors_of_colloids, errors_of_rods, factor_of_estimates, points, table_hash,
+};
 pub use knots::{Shapes, knots_folder, tight_shapes, write_knots};
 pub use nematic::{
     BucklingCase, BucklingRow, Colloid, FieldSnapshot, NEMATIC_RESULTS_VERSION, NematicCase,
@@ -50,8 +54,4 @@ pub use terms::{TermCost, term_costs};
 pub use tradeoff::{
     CaseSet, PeakBytes, REFERENCE, Setting, TradeoffEvent, TradeoffRow, TradeoffRun, TradeoffWork,
     compared, ladder, settings_of, tradeoff,
-};
-pub use wish::{
-    CheckRow, Cover, ErrorRow, Factor, Grant, Measured, Point, Record, Stamp, Wish,
-    check_estimates, errors_of_colloids, errors_of_rods, factor_of_estimates, points, table_hash,
 };

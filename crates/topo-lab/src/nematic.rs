@@ -1,7 +1,7 @@
 //! Nematic scenes: colloids, charged, switched and followed.
 
 mod battery;
-mod by_wish;
+mod by_goal;
 mod case;
 mod check;
 mod cost;

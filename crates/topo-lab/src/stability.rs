@@ -26,7 +26,7 @@ pub fn stability(
     preset: Preset,
     known: &[StabilityRow],
     interrupt: &Interrupt,
-    told: &(dyn Fn(&StabilityRow) + Sync),
+    report: &(dyn Fn(&StabilityRow) + Sync),
 ) -> Vec<StabilityRow> {
     cells(system, preset)
         .par_iter()
@@ -45,7 +45,7 @@ pub fn stability(
             if known.is_none() && interrupt.is_requested() {
                 return None;
             }
-            told(&row);
+            report(&row);
             Some(row)
         })
         .collect()

@@ -48,7 +48,7 @@ pub struct TermCost {
 /// Runs of each scene.
 const N_RUNS: usize = 5;
 
-/// Measures every term, on one thread; `told` hears of each as it is done.
+/// Measures every term, on one thread; `report` hears of each as it is done.
 ///
 /// The runs with and without a term alternate, so that a machine that grows slower does not decide. An interrupt ends the measurement
 /// after the present run; what is whole by then is returned.
@@ -61,7 +61,7 @@ const N_RUNS: usize = 5;
 pub fn term_costs(
     preset: Preset,
     interrupt: &Interrupt,
-    told: &(dyn Fn(&TermCost) + Sync),
+    report: &(dyn Fn(&TermCost) + Sync),
 ) -> Result<Vec<TermCost>, LabError> {
     let mut terms = rod::terms(preset);
     terms.extend(nematic::terms(preset));
@@ -69,7 +69,7 @@ pub fn term_costs(
         let mut rows = Vec::new();
         for term in &terms {
             if let Some(pair) = term.measure(interrupt)? {
-                pair.iter().for_each(told);
+                pair.iter().for_each(report);
                 rows.extend(pair);
             }
         }

@@ -35,11 +35,11 @@ pub fn tradeoff(
         (System::Knots, _) => knots::trials(preset)?,
         _ => return ladder(system, CaseSet::Table, work),
     };
-    (work.told)(TradeoffEvent::Begin(trials.len()));
+    (work.report)(TradeoffEvent::Begin(trials.len()));
     run_all(&trials, work)
 }
 
-/// Runs the settings that wishes choose from on the cases of a set; what is `known` is not run again.
+/// Runs the settings that goals choose from on the cases of a set; what is `known` is not run again.
 ///
 /// When interrupted, what is finished is returned. There is no ladder of knots.
 ///
@@ -55,7 +55,7 @@ pub fn ladder(
         System::Nematic => nematic::ladder_trials(set),
         System::Knots => Vec::new(),
     };
-    (work.told)(TradeoffEvent::Begin(trials.len()));
+    (work.report)(TradeoffEvent::Begin(trials.len()));
     let runs = run_all(&trials, work)?;
     Ok(match system {
         System::Nematic => nematic::with_references(runs),
@@ -95,7 +95,7 @@ fn run_all(trials: &[Trial], work: &TradeoffWork<'_>) -> Result<Vec<TradeoffRun>
                         }),
                 );
             }
-            (work.told)(TradeoffEvent::Done {
+            (work.report)(TradeoffEvent::Done {
                 name: &trial.name(),
                 runs: &runs,
             });
@@ -160,7 +160,7 @@ pub(crate) fn fitted_ratio(system: System, case: &str, coarse: f64, fine: f64) -
     Some(nematic::fitted(case, coarse)? / nematic::fitted(case, fine)?)
 }
 
-/// Resolutions and tolerances that wishes choose from, from coarse to fine; each is compared with the one before it.
+/// Resolutions and tolerances that goals choose from, from coarse to fine; each is compared with the one before it.
 pub(crate) fn ladder_of(system: System) -> Vec<(f64, f64)> {
     match system {
         System::Rod => rod::LADDER.iter().map(|&(n, t)| (n as f64, t)).collect(),
@@ -239,7 +239,7 @@ mod tests {
                 run();
                 5
             },
-            told: &|_| {
+            report: &|_| {
                 n_told.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
             },
         };

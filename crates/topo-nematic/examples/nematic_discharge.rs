@@ -28,7 +28,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let parameters = NematicParameters {
         radius,
         spacing,
-        pattern: SurfacePattern::Charge(charge),
+        pattern: SurfacePattern::Winding(charge),
         ..Default::default()
     };
     let battery = NematicBattery::new(&parameters, &NematicAccuracy::default())?;

@@ -113,7 +113,7 @@ impl DirectorTable {
 #[non_exhaustive]
 pub enum SurfacePattern {
     /// n_q = (sin θ cos qφ, sin θ sin qφ, cos θ), of effective charge q.
-    Charge(i32),
+    Winding(i32),
     /// Along the surface normal.
     Homeotropic,
     /// Tangential, along the projection of an axis.
@@ -137,7 +137,7 @@ impl SurfacePattern {
     /// A vector without direction, a table of the wrong length, a charge beyond ±10 000.
     pub fn check(&self, name: &str) -> Result<(), NematicError> {
         match self {
-            Self::Charge(q) if q.unsigned_abs() > LARGEST_CHARGE.unsigned_abs() => {
+            Self::Winding(q) if q.unsigned_abs() > LARGEST_CHARGE.unsigned_abs() => {
                 return Err(InvalidValue::new(
                     format!("{name}.charge"),
                     f64::from(*q),
@@ -145,7 +145,7 @@ impl SurfacePattern {
                 )
                 .into());
             }
-            Self::Charge(_) | Self::Homeotropic => {}
+            Self::Winding(_) | Self::Homeotropic => {}
             Self::Planar { axis } => {
                 unit(&format!("{name}.planar.axis"), *axis)?;
             }
@@ -160,7 +160,7 @@ impl SurfacePattern {
     /// Turns of the pattern along the equator.
     pub fn charge(&self) -> Option<i32> {
         match self {
-            Self::Charge(q) => Some(*q),
+            Self::Winding(q) => Some(*q),
             _ => None,
         }
     }
@@ -169,7 +169,7 @@ impl SurfacePattern {
     pub fn director(&self, direction: [f64; 3]) -> [f64; 3] {
         let [x, y, z] = normalised(direction);
         match self {
-            Self::Charge(q) => {
+            Self::Winding(q) => {
                 let sin = x.hypot(y);
                 let angle = f64::from(*q) * y.atan2(x);
                 [sin * angle.cos(), sin * angle.sin(), z]
@@ -294,7 +294,7 @@ mod tests {
     #[test]
     fn patterns_have_their_symmetry() {
         let r = [0.48, 0.36, 0.8];
-        assert!((along(SurfacePattern::Charge(1).director(r), r) - 1.0).abs() < 1e-12);
+        assert!((along(SurfacePattern::Winding(1).director(r), r) - 1.0).abs() < 1e-12);
         assert_eq!(
             SurfacePattern::Homeotropic.director([0.0, 0.0, 2.0]),
             [0.0, 0.0, 1.0]
@@ -308,13 +308,13 @@ mod tests {
             assert!((along(n, n) - 1.0).abs() < 1e-9);
         }
         // n_q turns q times along the equator.
-        let n = SurfacePattern::Charge(6).director([0.5_f64.cos(), 0.5_f64.sin(), 0.0]);
+        let n = SurfacePattern::Winding(6).director([0.5_f64.cos(), 0.5_f64.sin(), 0.0]);
         assert!((n[0] - 3.0_f64.cos()).abs() < 1e-12 && (n[1] - 3.0_f64.sin()).abs() < 1e-12);
     }
 
     #[test]
     fn a_table_reproduces_the_pattern_it_was_made_from() {
-        let pattern = SurfacePattern::Charge(3);
+        let pattern = SurfacePattern::Winding(3);
         let (n_polar, n_azimuth) = (61, 240);
         let mut directors = Vec::new();
         for p in 0..n_polar {
@@ -366,8 +366,8 @@ mod tests {
                     .is_err()
             );
         }
-        assert!(SurfacePattern::Charge(i32::MIN).check("p").is_err());
-        assert!(SurfacePattern::Charge(-7).check("p").is_ok());
+        assert!(SurfacePattern::Winding(i32::MIN).check("p").is_err());
+        assert!(SurfacePattern::Winding(-7).check("p").is_ok());
         let table = |n_polar, n_azimuth, n: usize| {
             SurfacePattern::Table(DirectorTable {
                 n_polar,

@@ -5,7 +5,7 @@ use topo_core::{FileError, InvalidValue};
 
 use crate::GridError;
 
-/// A nematic, its grid, its particle or its protocol cannot be had as asked.
+/// A nematic, its grid, its particle or its protocol cannot be made as asked.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum NematicError {

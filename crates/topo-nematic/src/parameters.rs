@@ -92,7 +92,7 @@ impl Default for NematicParameters {
             cell: [40.0 / 7.0, 40.0 / 7.0, 30.0 / 7.0],
             cells: None,
             particle: true,
-            pattern: SurfacePattern::Charge(1),
+            pattern: SurfacePattern::Winding(1),
             anchoring: Anchoring::Strong,
             boundary: Boundary::CutLink,
             plates: Plate::default(),

@@ -12,23 +12,23 @@ use crate::refusal::Refusal;
 
 /// Longest time until Ctrl-C is noticed.
 const PAUSE: Duration = Duration::from_millis(40);
-/// Words that may wait for the interpreter; then the work waits, so that memory stays bounded.
+/// Notices that may wait for the interpreter; then the work waits, so that memory stays bounded.
 const WAITING: usize = 64;
 /// Stack of the thread, that of a main thread.
 const STACK: usize = 8 << 20;
 
-enum Said<W, T> {
-    Word(W),
+enum Message<W, T> {
+    Notice(W),
     End(Result<T, Refusal>),
 }
 
-/// What work says while it goes on; words are dropped once nobody listens.
-pub struct Teller<W, T>(SyncSender<Said<W, T>>);
+/// What work says while it goes on; notices are dropped once nobody listens.
+pub struct Reporter<W, T>(SyncSender<Message<W, T>>);
 
-impl<W, T> Teller<W, T> {
-    pub fn tell(&self, word: W) {
+impl<W, T> Reporter<W, T> {
+    pub fn report(&self, notice: W) {
         // nobody listens any more once an interrupt came
-        let _ = self.0.send(Said::Word(word));
+        let _ = self.0.send(Message::Notice(notice));
     }
 }
 
@@ -41,47 +41,47 @@ pub enum Leave {
     AtOnce,
 }
 
-/// Runs `work` without the interpreter's lock; `hear` gets its words, on the calling thread and with the lock.
+/// Runs `work` without the interpreter's lock; `listen` gets its notices, on the calling thread and with the lock.
 ///
-/// Ctrl-C, and an exception of `hear`, raise the interrupt and are given back.
+/// Ctrl-C, and an exception of `listen`, raise the interrupt and are given back.
 pub fn attend<W, T>(
     py: Python<'_>,
     interrupt: &Interrupt,
     leave: Leave,
-    mut hear: impl FnMut(Python<'_>, W) -> PyResult<()>,
-    work: impl FnOnce(&Teller<W, T>) -> Result<T, Refusal> + Send + 'static,
+    mut listen: impl FnMut(Python<'_>, W) -> PyResult<()>,
+    work: impl FnOnce(&Reporter<W, T>) -> Result<T, Refusal> + Send + 'static,
 ) -> PyResult<T>
 where
     W: Send + 'static,
     T: Send + 'static,
 {
-    let (sender, mut words) = sync_channel(WAITING);
+    let (sender, mut notices) = sync_channel(WAITING);
     let run = move || {
-        let teller = Teller(sender);
-        let end = work(&teller);
-        let _ = teller.0.send(Said::End(end));
+        let reporter = Reporter(sender);
+        let end = work(&reporter);
+        let _ = reporter.0.send(Message::End(end));
     };
     let worker = thread::Builder::new().stack_size(STACK).spawn(run)?;
     let stopped = loop {
         let next;
-        (words, next) = py.detach(move || {
-            let next = words.recv_timeout(PAUSE);
-            (words, next)
+        (notices, next) = py.detach(move || {
+            let next = notices.recv_timeout(PAUSE);
+            (notices, next)
         });
-        let heard = match next {
-            Ok(Said::End(end)) => return end.map_err(PyErr::from),
-            Ok(Said::Word(word)) => hear(py, word),
+        let outcome = match next {
+            Ok(Message::End(end)) => return end.map_err(PyErr::from),
+            Ok(Message::Notice(notice)) => listen(py, notice),
             Err(RecvTimeoutError::Timeout) => Ok(()),
             Err(RecvTimeoutError::Disconnected) => Err(PyRuntimeError::new_err(
                 "the computation ended in a fault of the program, printed above: please report it",
             )),
         };
-        if let Err(error) = heard.and_then(|()| py.check_signals()) {
+        if let Err(error) = outcome.and_then(|()| py.check_signals()) {
             break error;
         }
     };
     interrupt.request();
-    drop(words);
+    drop(notices);
     if leave == Leave::WhenKept {
         // a worker that panicked has said so
         let _ = py.detach(|| worker.join());

@@ -18,7 +18,7 @@ use topo_nematic::{
     Threads,
 };
 
-use crate::attend::{Leave, Teller, attend};
+use crate::attend::{Leave, Reporter, attend};
 use crate::refusal::Refusal;
 use crate::rods::{curve, stop};
 use crate::values::settings;
@@ -38,42 +38,42 @@ fn with_file<'a>(hooks: RunHooks<'a>, file: &Checkpoint) -> RunHooks<'a> {
 }
 
 /// What a run says: how far it is, or the nematic at an output time.
-enum Word {
+enum Notice {
     Progress(Progress),
     Sample(Box<(NematicSample, Option<Points>)>),
 }
 
 type Points = Vec<[f64; 3]>;
 
-impl Word {
+impl Notice {
     fn say(self, py: Python<'_>, to: Option<&Bound<'_, PyAny>>) -> PyResult<()> {
         let Some(to) = to else { return Ok(()) };
-        let said = match self {
+        let dict = match self {
             Self::Progress(p) => progress(py, &p)?,
             Self::Sample(seen) => {
-                let said = sample(py, &seen.0)?;
-                said.set_item("phase", "discharge")?;
-                said.set_item("ring", seen.1.map(|line| points(py, &line)))?;
-                said
+                let dict = sample(py, &seen.0)?;
+                dict.set_item("phase", "discharge")?;
+                dict.set_item("ring", seen.1.map(|line| points(py, &line)))?;
+                dict
             }
         };
-        to.call1((said,)).map(drop)
+        to.call1((dict,)).map(drop)
     }
 }
 
 fn progress<'py>(py: Python<'py>, p: &Progress) -> PyResult<Bound<'py, PyDict>> {
-    let said = PyDict::new(py);
+    let dict = PyDict::new(py);
     let phase = match p.phase {
         Phase::Charge => "charge",
         Phase::FinalState => "final state",
         Phase::Discharge => "discharge",
     };
-    said.set_item("phase", phase)?;
-    said.set_item("step", p.step)?;
-    said.set_item("time", p.time)?;
-    said.set_item("energy", p.energy)?;
-    said.set_item("rms_field", p.rms_field)?;
-    Ok(said)
+    dict.set_item("phase", phase)?;
+    dict.set_item("step", p.step)?;
+    dict.set_item("time", p.time)?;
+    dict.set_item("energy", p.energy)?;
+    dict.set_item("rms_field", p.rms_field)?;
+    Ok(dict)
 }
 
 #[pymethods]
@@ -117,8 +117,8 @@ impl ColloidBattery {
         let settings: ChargeSettings = settings(&ChargeSettings::default(), given)?;
         let (interrupt, battery) = (Interrupt::new(), self.0.clone());
         let (token, wants) = (interrupt.clone(), observer.is_some());
-        let work = move |teller: &Teller<Word, ChargedNematic>| {
-            let mut see = |p: &Progress| teller.tell(Word::Progress(*p));
+        let work = move |reporter: &Reporter<Notice, ChargedNematic>| {
+            let mut see = |p: &Progress| reporter.report(Notice::Progress(*p));
             let hooks = with_file(RunHooks::new(&token), &checkpoint);
             let mut hooks = if wants {
                 hooks.with_progress(&mut see)
@@ -127,12 +127,12 @@ impl ColloidBattery {
             };
             Ok(battery.charge(&settings, &mut hooks)?)
         };
-        let hear = |py: Python<'_>, word: Word| word.say(py, observer.as_ref());
+        let listen = |py: Python<'_>, notice: Notice| notice.say(py, observer.as_ref());
         Ok(ChargedColloid(attend(
             py,
             &interrupt,
             Leave::WhenKept,
-            hear,
+            listen,
             work,
         )?))
     }
@@ -147,19 +147,19 @@ impl ChargedColloid {
     /// How it was charged.
     fn report<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let report = self.0.report();
-        let said = PyDict::new(py);
-        said.set_item("stop", report.stop.to_string())?;
-        said.set_item("finished", report.is_converged())?;
-        said.set_item("n_steps", report.n_steps)?;
-        said.set_item("rms_field", report.rms_field)?;
-        said.set_item("energy", report.energy.total())?;
-        said.set_item("parts", parts(py, &report.energy)?)?;
-        said.set_item("order_parameter", report.order.magnitude())?;
-        said.set_item("azimuth", report.order.azimuth())?;
+        let dict = PyDict::new(py);
+        dict.set_item("stop", report.stop.to_string())?;
+        dict.set_item("finished", report.is_converged())?;
+        dict.set_item("n_steps", report.n_steps)?;
+        dict.set_item("rms_field", report.rms_field)?;
+        dict.set_item("energy", report.energy.total())?;
+        dict.set_item("parts", parts(py, &report.energy)?)?;
+        dict.set_item("order_parameter", report.order.magnitude())?;
+        dict.set_item("azimuth", report.order.azimuth())?;
         let minimum = report.minimum.as_ref();
-        said.set_item("state", minimum.map(|m| m.state.name()))?;
-        said.set_item("lowest_eigenvalue", minimum.map(|m| m.lowest_eigenvalue))?;
-        Ok(said)
+        dict.set_item("state", minimum.map(|m| m.state.name()))?;
+        dict.set_item("lowest_eigenvalue", minimum.map(|m| m.lowest_eigenvalue))?;
+        Ok(dict)
     }
 
     /// Mean radius, height, strongest mode and its amplitude of the ring, and its line.
@@ -167,15 +167,15 @@ impl ChargedColloid {
         let Some(ring) = self.0.ring(threshold) else {
             return Ok(None);
         };
-        let said = PyDict::new(py);
-        said.set_item("radius", ring.radius)?;
-        said.set_item("height", ring.height)?;
-        said.set_item("mode", ring.mode())?;
-        said.set_item("amplitude", ring.amplitude())?;
-        said.set_item("modes", PyArray1::from_slice(py, &ring.modes))?;
+        let dict = PyDict::new(py);
+        dict.set_item("radius", ring.radius)?;
+        dict.set_item("height", ring.height)?;
+        dict.set_item("mode", ring.mode())?;
+        dict.set_item("amplitude", ring.amplitude())?;
+        dict.set_item("modes", PyArray1::from_slice(py, &ring.modes))?;
         let line = ring_line(self.0.state(), threshold).unwrap_or_default();
-        said.set_item("points", points(py, &line))?;
-        Ok(Some(said))
+        dict.set_item("points", points(py, &line))?;
+        Ok(Some(dict))
     }
 
     fn fields<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
@@ -218,12 +218,12 @@ impl SwitchedColloid {
         settings.flow = flow.then(FlowParameters::default);
         let (interrupt, switched) = (Interrupt::new(), self.0.clone());
         let (token, wants) = (interrupt.clone(), observer.is_some());
-        let work = move |teller: &Teller<Word, (topo_nematic::Discharge, Rings)>| {
+        let work = move |reporter: &Reporter<Notice, (topo_nematic::Discharge, Rings)>| {
             let mut rings: Rings = Vec::new();
             let mut see = |s: &NematicSample, state: &NematicState, _: Option<&FlowCoupling>| {
                 let line = ring_line(state, settings.ring_threshold);
                 if wants {
-                    teller.tell(Word::Sample(Box::new((s.clone(), line.clone()))));
+                    reporter.report(Notice::Sample(Box::new((s.clone(), line.clone()))));
                 }
                 rings.extend(line.map(|line| (s.time, line)));
             };
@@ -231,8 +231,8 @@ impl SwitchedColloid {
             let run = switched.discharge(&settings, &mut with_file(hooks, &checkpoint))?;
             Ok((run, rings))
         };
-        let hear = |py: Python<'_>, word: Word| word.say(py, observer.as_ref());
-        let (run, rings) = attend(py, &interrupt, Leave::WhenKept, hear, work)?;
+        let listen = |py: Python<'_>, notice: Notice| notice.say(py, observer.as_ref());
+        let (run, rings) = attend(py, &interrupt, Leave::WhenKept, listen, work)?;
         discharged(py, &run, &rings)
     }
 }
@@ -242,57 +242,57 @@ fn discharged<'py>(
     run: &topo_nematic::Discharge,
     rings: &Rings,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let said = PyDict::new(py);
+    let dict = PyDict::new(py);
     let (record, report) = (&run.record, &run.record.report);
-    curve(py, &record.curve, &said)?;
+    curve(py, &record.curve, &dict)?;
     let energy: Vec<f64> = (0..record.curve.len())
         .map(|i| record.curve.stored_total(i))
         .collect();
-    said.set_item("energy", energy.into_pyarray(py))?;
+    dict.set_item("energy", energy.into_pyarray(py))?;
     let seen: PyResult<Vec<_>> = record.samples.iter().map(|s| sample(py, s)).collect();
-    said.set_item("samples", seen?)?;
+    dict.set_item("samples", seen?)?;
     let rings: Vec<_> = rings
         .iter()
         .map(|(t, line)| (*t, points(py, line)))
         .collect();
-    said.set_item("rings", rings)?;
-    said.set_item("removed", run.removed)?;
-    said.set_item("start", run.start)?;
-    said.set_item("final", run.final_state.energy)?;
-    said.set_item("final_source", run.final_state.source.name())?;
-    said.set_item("stored", run.stored)?;
-    stop(&said, &report.stop)?;
-    said.set_item("n_steps", report.n_steps)?;
-    said.set_item("n_rejected", report.rejections.total())?;
-    said.set_item("ledger_residual", report.ledger_residual)?;
-    said.set_item("max_speed", report.own.flow.as_ref().map(|f| f.max_speed))?;
+    dict.set_item("rings", rings)?;
+    dict.set_item("removed", run.removed)?;
+    dict.set_item("start", run.start)?;
+    dict.set_item("final", run.final_state.energy)?;
+    dict.set_item("final_source", run.final_state.source.name())?;
+    dict.set_item("stored", run.stored)?;
+    stop(&dict, &report.stop)?;
+    dict.set_item("n_steps", report.n_steps)?;
+    dict.set_item("n_rejected", report.rejections.total())?;
+    dict.set_item("ledger_residual", report.ledger_residual)?;
+    dict.set_item("max_speed", report.own.flow.as_ref().map(|f| f.max_speed))?;
     let ends = [run.start, run.final_state.energy];
     let times = DischargeTimes::between(&record.curve, &EnergyParts::NAMES, ends, &NEMATIC_SHARES);
-    said.set_item(
+    dict.set_item(
         "times",
         NEMATIC_SHARES.map(|share| (share, times.at(share).map(|t| t.value))),
     )?;
-    said.set_item("fields", fields(py, &run.state)?)?;
-    Ok(said)
+    dict.set_item("fields", fields(py, &run.state)?)?;
+    Ok(dict)
 }
 
 fn parts<'py>(py: Python<'py>, energy: &EnergyParts) -> PyResult<Bound<'py, PyDict>> {
-    let said = PyDict::new(py);
+    let dict = PyDict::new(py);
     for (name, value) in EnergyParts::NAMES.iter().zip(energy.as_array()) {
-        said.set_item(name, value)?;
+        dict.set_item(name, value)?;
     }
-    Ok(said)
+    Ok(dict)
 }
 
 fn sample<'py>(py: Python<'py>, s: &NematicSample) -> PyResult<Bound<'py, PyDict>> {
-    let said = PyDict::new(py);
-    said.set_item("time", s.time)?;
-    said.set_item("energy", s.energy.total())?;
-    said.set_item("order_parameter", s.order.magnitude())?;
-    said.set_item("ring_radius", s.ring.as_ref().map(|r| r.radius))?;
-    said.set_item("max_speed", s.max_speed)?;
-    said.set_item("flow_correlation", s.flow_correlation)?;
-    Ok(said)
+    let dict = PyDict::new(py);
+    dict.set_item("time", s.time)?;
+    dict.set_item("energy", s.energy.total())?;
+    dict.set_item("order_parameter", s.order.magnitude())?;
+    dict.set_item("ring_radius", s.ring.as_ref().map(|r| r.radius))?;
+    dict.set_item("max_speed", s.max_speed)?;
+    dict.set_item("flow_correlation", s.flow_correlation)?;
+    Ok(dict)
 }
 
 fn points<'py>(py: Python<'py>, line: &[[f64; 3]]) -> Bound<'py, PyArray2<f64>> {
@@ -317,19 +317,19 @@ fn fields<'py>(py: Python<'py>, state: &NematicState) -> PyResult<Bound<'py, PyD
         let director: Vec<f64> = state.director_field().into_iter().flatten().collect();
         (state.order_field(), director, fluid)
     });
-    let said = PyDict::new(py);
+    let dict = PyDict::new(py);
     let shape = (nz, ny, nx);
     let order = Array3::from_shape_vec(shape, order).map_err(wrong)?;
-    said.set_item("order", order.into_pyarray(py))?;
+    dict.set_item("order", order.into_pyarray(py))?;
     let director = Array::from_shape_vec((nz, ny, nx, 3), director).map_err(wrong)?;
-    said.set_item("director", director.into_pyarray(py))?;
+    dict.set_item("director", director.into_pyarray(py))?;
     let tensor = Array::from_shape_vec((5, nz, ny, nx), state.q_tensor().to_vec());
-    said.set_item("q_tensor", tensor.map_err(wrong)?.into_pyarray(py))?;
+    dict.set_item("q_tensor", tensor.map_err(wrong)?.into_pyarray(py))?;
     let fluid = Array3::from_shape_vec(shape, fluid).map_err(wrong)?;
-    said.set_item("fluid", fluid.into_pyarray(py))?;
+    dict.set_item("fluid", fluid.into_pyarray(py))?;
     let centre = state.particle().map_or([0.0; 3], |p| p.centre());
     let first = grid.centre([0, 0, 0]);
-    said.set_item("origin", [0, 1, 2].map(|a| first[a] - centre[a]))?;
-    said.set_item("spacing", grid.spacing())?;
-    Ok(said)
+    dict.set_item("origin", [0, 1, 2].map(|a| first[a] - centre[a]))?;
+    dict.set_item("spacing", grid.spacing())?;
+    Ok(dict)
 }

@@ -180,8 +180,8 @@ impl From<LabError> for Refusal {
                 class: Class::Scene,
                 ..Self::value(option.trim_start_matches('-'), value, &remedy)
             },
-            LabError::Wish { wish, reason } => Self {
-                value: Some(wish),
+            LabError::Goal { goal, reason } => Self {
+                value: Some(goal),
                 remedy: Some(reason),
                 ..scene
             },

@@ -171,19 +171,19 @@ impl CutRod {
         let cut = self.cut.clone();
         let work = move |stop: &_| Ok(cut.discharge(&settings, &mut RunHooks::new(stop))?);
         let run = quietly(py, work)?;
-        let said = record(py, &run.record, self.cut.charged.battery())?;
-        said.set_item("at", run.at)?;
-        said.set_item("removed", run.removed)?;
-        said.set_item("start", run.start)?;
-        said.set_item("after_cut", run.after_cut)?;
-        said.set_item("parted", run.parted)?;
+        let dict = record(py, &run.record, self.cut.charged.battery())?;
+        dict.set_item("at", run.at)?;
+        dict.set_item("removed", run.removed)?;
+        dict.set_item("start", run.start)?;
+        dict.set_item("after_cut", run.after_cut)?;
+        dict.set_item("parted", run.parted)?;
         let parts = run.record.report.own.parts.elastic();
         let times = times(&run.record.curve, &parts, run.start);
-        said.set_item(
+        dict.set_item(
             "times",
             ELASTIC_SHARES.map(|share| (share, times.at(share).map(|t| t.value))),
         )?;
-        Ok(said)
+        Ok(dict)
     }
 }
 
@@ -222,7 +222,7 @@ fn twist(state: &RodState) -> Vec<f64> {
 pub fn curve<'py>(
     py: Python<'py>,
     curve: &DischargeCurve,
-    said: &Bound<'py, PyDict>,
+    dict: &Bound<'py, PyDict>,
 ) -> PyResult<()> {
     let array = |values: &[f64]| PyArray1::from_slice(py, values);
     let named = |names: &[String], series: &[Vec<f64>]| -> PyResult<Bound<'py, PyDict>> {
@@ -232,15 +232,15 @@ pub fn curve<'py>(
         }
         Ok(all)
     };
-    said.set_item("time", array(curve.time()))?;
-    said.set_item("parts", named(curve.parts(), curve.stored())?)?;
-    said.set_item("dissipated", named(curve.channels(), curve.dissipated())?)
+    dict.set_item("time", array(curve.time()))?;
+    dict.set_item("parts", named(curve.parts(), curve.stored())?)?;
+    dict.set_item("dissipated", named(curve.channels(), curve.dissipated())?)
 }
 
 /// How a phase ended.
-pub fn stop(said: &Bound<'_, PyDict>, stop: &StopReason) -> PyResult<()> {
-    said.set_item("stop", stop.to_string())?;
-    said.set_item("finished", stop.is_success())
+pub fn stop(dict: &Bound<'_, PyDict>, stop: &StopReason) -> PyResult<()> {
+    dict.set_item("stop", stop.to_string())?;
+    dict.set_item("finished", stop.is_success())
 }
 
 fn record<'py>(
@@ -248,8 +248,8 @@ fn record<'py>(
     record: &RunRecord,
     battery: &topo_rod::RodBattery,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let said = PyDict::new(py);
-    curve(py, &record.curve, &said)?;
+    let dict = PyDict::new(py);
+    curve(py, &record.curve, &dict)?;
     let parts = record.report.own.parts.elastic();
     let columns: Vec<&[f64]> = parts
         .iter()
@@ -257,8 +257,8 @@ fn record<'py>(
         .collect();
     let sum = |i: usize| columns.iter().map(|c| c[i]).sum::<f64>();
     let energy: Vec<f64> = (0..record.curve.len()).map(sum).collect();
-    said.set_item("energy", energy.into_pyarray(py))?;
-    said.set_item("samples", samples(py, &record.samples, battery)?)?;
+    dict.set_item("energy", energy.into_pyarray(py))?;
+    dict.set_item("samples", samples(py, &record.samples, battery)?)?;
     let PhaseReport {
         n_steps,
         rejections,
@@ -266,13 +266,13 @@ fn record<'py>(
         own,
         ..
     } = &record.report;
-    stop(&said, &record.report.stop)?;
-    said.set_item("n_steps", n_steps)?;
-    said.set_item("n_rejected", rejections.total())?;
-    said.set_item("ledger_residual", ledger_residual)?;
-    said.set_item("min_distance_over_contact", own.min_distance_over_contact)?;
-    said.set_item("link_drift", own.link_drift)?;
-    Ok(said)
+    stop(&dict, &record.report.stop)?;
+    dict.set_item("n_steps", n_steps)?;
+    dict.set_item("n_rejected", rejections.total())?;
+    dict.set_item("ledger_residual", ledger_residual)?;
+    dict.set_item("min_distance_over_contact", own.min_distance_over_contact)?;
+    dict.set_item("link_drift", own.link_drift)?;
+    Ok(dict)
 }
 
 /// The rod at output times: numbers, and arrays whose first index is time.
@@ -281,9 +281,9 @@ fn samples<'py>(
     samples: &[RodSample],
     battery: &topo_rod::RodBattery,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let said = PyDict::new(py);
+    let dict = PyDict::new(py);
     let column = |name: &str, of: &dyn Fn(&RodSample) -> f64| {
-        said.set_item(
+        dict.set_item(
             name,
             samples.iter().map(of).collect::<Vec<_>>().into_pyarray(py),
         )
@@ -299,15 +299,15 @@ fn samples<'py>(
     let states = || samples.iter().map(|s| &s.state);
     let points = states().flat_map(|s| s.vertices().iter().flat_map(|x| [x.x, x.y, x.z]));
     let points = Array3::from_shape_vec((samples.len(), n, 3), points.collect());
-    said.set_item("points", points.unwrap_or_default().into_pyarray(py))?;
+    dict.set_item("points", points.unwrap_or_default().into_pyarray(py))?;
     let flat = |values: Vec<f64>| Array2::from_shape_vec((samples.len(), n), values);
     let twists = flat(states().flat_map(twist).collect());
-    said.set_item("twist", twists.unwrap_or_default().into_pyarray(py))?;
+    dict.set_item("twist", twists.unwrap_or_default().into_pyarray(py))?;
     let density = |s| battery.energy_density(s).into_iter().map(|w| w * AREA);
     let density = flat(states().flat_map(density).collect());
-    said.set_item(
+    dict.set_item(
         "energy_density",
         density.unwrap_or_default().into_pyarray(py),
     )?;
-    Ok(said)
+    Ok(dict)
 }

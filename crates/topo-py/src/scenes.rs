@@ -6,10 +6,10 @@ use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use topo_lab::{
-    Battery, Colloid, Elastic, Event, Options, Scene, SweepSettings, Wish, parse_scene, read_scene,
+    Battery, Colloid, Elastic, Event, Goal, Options, Scene, SweepSettings, parse_scene, read_scene,
 };
 
-use crate::attend::{Leave, Teller, attend};
+use crate::attend::{Leave, Reporter, attend};
 use crate::refusal::Refusal;
 use crate::values::table;
 
@@ -40,7 +40,7 @@ pub struct Asked {
 }
 
 impl Asked {
-    fn wish(&self) -> Result<Option<Wish>, Refusal> {
+    fn goal(&self) -> Result<Option<Goal>, Refusal> {
         let refused =
             |key, value: String| move |remedy: String| Refusal::value(key, value, &remedy);
         Ok(match (self.accuracy, &self.budget) {
@@ -49,10 +49,10 @@ impl Asked {
                 return Err(Refusal::value("budget", text, remedy));
             }
             (Some(error), None) => {
-                Some(Wish::accuracy(error).map_err(refused("accuracy", error.to_string()))?)
+                Some(Goal::accuracy(error).map_err(refused("accuracy", error.to_string()))?)
             }
             (None, Some(text)) => {
-                Some(Wish::budget(text).map_err(refused("budget", text.clone()))?)
+                Some(Goal::budget(text).map_err(refused("budget", text.clone()))?)
             }
             (None, None) => None,
         })
@@ -100,7 +100,7 @@ fn with_preset(text: &str, preset: &str) -> Result<String, Refusal> {
 }
 
 /// What a run says, owned.
-enum Word {
+enum Notice {
     Begin(usize, usize, f64),
     Replaced(Vec<String>, String),
     Knot(String, f64),
@@ -108,7 +108,7 @@ enum Word {
     Case(String, usize, String, f64),
 }
 
-impl Word {
+impl Notice {
     fn of(event: Event<'_>) -> Option<Self> {
         Some(match event {
             Event::Begin {
@@ -159,9 +159,9 @@ pub struct Ran {
     seconds: f64,
 }
 
-/// Runs a scene as `topo run` does; `told` is called with what happens.
+/// Runs a scene as `topo run` does; `listener` is called with what happens.
 #[pyfunction]
-pub fn run(py: Python<'_>, asked: Asked, told: Option<Bound<'_, PyAny>>) -> PyResult<Ran> {
+pub fn run(py: Python<'_>, asked: Asked, listener: Option<Bound<'_, PyAny>>) -> PyResult<Ran> {
     let settings = SweepSettings {
         jobs: asked.jobs,
         fresh: asked.fresh,
@@ -170,32 +170,33 @@ pub fn run(py: Python<'_>, asked: Asked, told: Option<Bound<'_, PyAny>>) -> PyRe
     };
     let out = asked.out.display().to_string();
     let interrupt = settings.interrupt.clone();
-    let hear = |_: Python<'_>, word: Word| told.as_ref().map_or(Ok(()), |to| word.say(to));
-    let work = move |teller: &Teller<Word, Ran>| worked(&asked, &settings, teller);
-    let ran = attend(py, &interrupt, Leave::WhenKept, hear, work);
+    let listen =
+        |_: Python<'_>, notice: Notice| listener.as_ref().map_or(Ok(()), |to| notice.say(to));
+    let work = move |reporter: &Reporter<Notice, Ran>| worked(&asked, &settings, reporter);
+    let ran = attend(py, &interrupt, Leave::WhenKept, listen, work);
     ran.map_err(|error| stopped(py, error, &out))
 }
 
 fn worked(
     asked: &Asked,
     settings: &SweepSettings,
-    teller: &Teller<Word, Ran>,
+    reporter: &Reporter<Notice, Ran>,
 ) -> Result<Ran, Refusal> {
     let options = Options {
         cuts: asked.cuts.as_deref(),
         knots: asked.knots.as_deref(),
         fields: asked.fields,
-        wish: asked.wish()?,
+        goal: asked.goal()?,
     };
     let progress = |event: Event<'_>| {
-        if let Some(word) = Word::of(event) {
-            teller.tell(word);
+        if let Some(notice) = Notice::of(event) {
+            reporter.report(notice);
         }
     };
     let mut scene = asked.scene()?;
     scene.change(&options)?;
     let mut experiment = scene.experiment()?;
-    let grant = experiment.grant(settings.jobs)?;
+    let choice = experiment.choose(settings.jobs)?;
     let folder = experiment.results(&settings.out);
     let swept = experiment.sweep(settings, &progress)?;
     let mut ran = Ran {
@@ -207,9 +208,9 @@ fn worked(
         ..Ran::default()
     };
     let mut failed = swept.failed().to_vec();
-    if let Some(grant) = grant.filter(|_| !swept.is_interrupted()) {
-        ran.warnings.extend(grant.stale.clone());
-        if let Some(checked) = swept.check(&grant, settings, &progress)? {
+    if let Some(choice) = choice.filter(|_| !swept.is_interrupted()) {
+        ran.warnings.extend(choice.stale.clone());
+        if let Some(checked) = swept.check(&choice, settings, &progress)? {
             if !checked.is_interrupted {
                 checked.write(&folder)?;
             }

@@ -1,7 +1,7 @@
 //! The rod as a system that the integrators of `topo-core` advance: only what the scene names is in it.
 
 mod account;
-mod expected;
+mod approaching;
 mod implicit;
 mod memory;
 mod parts;
@@ -22,7 +22,7 @@ use crate::guard::{RiseBudget, certify, largest_displacement};
 use crate::newton::{NewtonMatrix, NewtonTwist};
 use crate::viscosity::{CentrelineViscosity, TwistViscosity, remove_mean};
 use crate::{Accuracy, Ends, Geometry, Guards, RodError, RodParameters, RodState, Tube};
-use expected::Expected;
+use approaching::ApproachingPairs;
 use parts::{Accepted, Frozen, unsolvable};
 
 pub(crate) use memory::ModelMemory;
@@ -38,7 +38,7 @@ pub struct RodModel {
     has_own_terms: bool,
     twist: Option<Twist>,
     contact: Option<ContactEnergy>,
-    expected: Expected,
+    expected: ApproachingPairs,
     friction: Option<Friction>,
     pairs: ContactPairs,
     has_strands: bool,
@@ -177,7 +177,7 @@ impl RodModel {
             has_own_terms: false,
             twist,
             contact,
-            expected: Expected::new(accuracy.tolerance),
+            expected: ApproachingPairs::new(accuracy.tolerance),
             friction,
             pairs,
             has_strands: reach > 0.0,

@@ -27,7 +27,7 @@ pub struct Provenance {
     /// Wall seconds by stage.
     pub wall_seconds: BTreeMap<String, f64>,
     /// What sweeps were expected to take and took, of those that computed anything.
-    pub estimates: BTreeMap<String, Expected>,
+    pub estimates: BTreeMap<String, EstimateAndTime>,
     /// What the numbers of each figure say.
     pub findings: BTreeMap<String, String>,
     /// Warnings of the runs, each with the number of runs that gave it.
@@ -36,7 +36,7 @@ pub struct Provenance {
 
 /// An estimate beside the time that was taken.
 #[derive(Debug, Serialize)]
-pub struct Expected {
+pub struct EstimateAndTime {
     /// What was expected.
     pub estimate: Estimate,
     /// Seconds that it took.
@@ -73,7 +73,7 @@ impl Provenance {
     /// Notes what a sweep was expected to take and took.
     pub fn estimated(&mut self, stage: &str, estimate: &Estimate, wall_seconds: f64) {
         if estimate.n_cases > 0 {
-            let expected = Expected {
+            let expected = EstimateAndTime {
                 estimate: *estimate,
                 wall_seconds,
             };

@@ -1,4 +1,4 @@
-//! Maps of the extremes, drawn and told.
+//! Maps of the extremes, drawn and described.
 
 use std::fmt::Write;
 

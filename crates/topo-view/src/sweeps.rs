@@ -1,7 +1,7 @@
 //! A sweep of any battery as pictures, drawn by what its [`Guide`](crate::guide::Guide) says of its tables.
 //!
 //! Reading order: `cases` (what a folder holds, and which settings are swept in it) → `groups` (which rows make one line, and how
-//! lines are told apart) → `sheet` (panels with a key) → `against` (results against settings), `curves` (discharge curves),
+//! lines are distinguished) → `sheet` (panels with a key) → `against` (results against settings), `curves` (discharge curves),
 //! `parts` (one case alone).
 
 pub(crate) mod against;

@@ -1,4 +1,4 @@
-//! Speed against accuracy, drawn and told.
+//! Speed against accuracy, drawn and described.
 
 use std::fmt::Write;
 
@@ -14,7 +14,7 @@ use topo_lab::Preset;
 use topo_lab::{CheckRow, Point, REFERENCE, Setting, System, TradeoffRow, points, settings_of};
 
 /// Errors that the short table asks for.
-const WISHES: [f64; 8] = [0.2, 0.1, 0.05, 0.03, 0.02, 0.01, 0.005, 0.002];
+const GOALS: [f64; 8] = [0.2, 0.1, 0.05, 0.03, 0.02, 0.01, 0.005, 0.002];
 
 /// Errors below this are drawn at it: numbers that agree to so many digits.
 const LEAST_ERROR: f64 = 1e-5;
@@ -194,7 +194,7 @@ pub fn section(quality: Preset, system: System, rows: &[TradeoffRow]) -> String 
     cases.sort_unstable();
     cases.dedup();
     let mut lines = vec![format!("Cases: {}.\n", cases.join("; "))];
-    put_wishes(&mut lines, &settings);
+    put_goals(&mut lines, &settings);
     put_settings(&mut lines, &settings);
     let points = points(system, rows);
     if quality == Preset::Standard && !points.is_empty() {
@@ -204,7 +204,7 @@ pub fn section(quality: Preset, system: System, rows: &[TradeoffRow]) -> String 
 }
 
 /// The cheapest setting that keeps each error.
-fn put_wishes(lines: &mut Vec<String>, settings: &[Setting]) {
+fn put_goals(lines: &mut Vec<String>, settings: &[Setting]) {
     lines.extend([
         "If you can live with an error of ..., use this, it costs ...\n".to_owned(),
         "| quantity | error asked for | setting | median | 90 % | CPU s a case | MB |".to_owned(),
@@ -212,10 +212,10 @@ fn put_wishes(lines: &mut Vec<String>, settings: &[Setting]) {
     ]);
     for name in quantities(settings) {
         let mut last = "";
-        for wish in WISHES {
+        for goal in GOALS {
             let best = settings
                 .iter()
-                .filter(|s| s.quantity == name && s.is_whole() && s.high_error <= wish)
+                .filter(|s| s.quantity == name && s.is_whole() && s.high_error <= goal)
                 .min_by(|a, b| a.cpu_seconds.total_cmp(&b.cpu_seconds));
             let Some(s) = best else { continue };
             if s.value == last {
@@ -224,7 +224,7 @@ fn put_wishes(lines: &mut Vec<String>, settings: &[Setting]) {
             last = &s.value;
             lines.push(format!(
                 "| {name} | {} | {} {} | {} | {} | {:.2} | {:.1} |",
-                percent(wish),
+                percent(goal),
                 s.setting,
                 s.value,
                 percent(s.median_error),
@@ -288,10 +288,10 @@ fn errors_of(setting: &Setting) -> String {
     )
 }
 
-/// What scenes by wish choose from.
+/// What scenes with a goal choose from.
 fn put_points(lines: &mut Vec<String>, system: System, points: Vec<Point>) {
     lines.extend([
-        "What scenes by wish choose from: errors of the last time listed; costs of both runs.\n"
+        "What scenes with a goal choose from: errors of the last time listed; costs of both runs.\n"
             .to_owned(),
         "| setting | coarser run | cases | median | 90 % | CPU s a case | MB |".to_owned(),
         "|---|---|---|---|---|---|---|".to_owned(),
@@ -311,7 +311,7 @@ fn put_points(lines: &mut Vec<String>, system: System, points: Vec<Point>) {
     lines.push(String::new());
 }
 
-/// How well promises and estimates of runs by wish hold on cases that they were not measured on.
+/// How well promises and estimates of runs with a goal hold on cases that they were not measured on.
 pub fn check_report(rows: &[CheckRow]) -> String {
     let mut text = String::from(
         "| system | setting | picked for | cases | promised in 90 % | true error, median | 90 % | as good as promised | covered by the estimate | estimate / true, median | CPU s a case |\n|---|---|---|---|---|---|---|---|---|---|---|\n",

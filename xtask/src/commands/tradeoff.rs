@@ -1,4 +1,4 @@
-//! `cargo xtask tradeoff`: speed against accuracy; what is measured can be kept as the table that wishes choose from.
+//! `cargo xtask tradeoff`: speed against accuracy; what is measured can be kept as the table that goals choose from.
 
 mod sets;
 

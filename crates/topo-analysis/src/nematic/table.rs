@@ -37,7 +37,7 @@ impl fmt::Display for Flow {
     }
 }
 
-/// One discharge of a charged colloid: lengths in ξ_N, energies in L ξ_N, times in τ_N.
+/// One discharge of a charged colloid: lengths in ξ_N, energies in L ξ_N, times in τ_N = ξ_N²/(Γ L).
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct NematicRow {
     /// Folder of the case.
@@ -78,13 +78,13 @@ pub struct NematicRow {
     /// C, in L/ξ_N².
     #[serde(default)]
     pub c: f64,
-    /// Elastic constant L.
+    /// Elastic constant L; one, unless the scene says otherwise.
     #[serde(default)]
     pub elastic_constant: f64,
     /// Second elastic constant L_2; empty where none is modelled.
     #[serde(default)]
     pub second_elastic_constant: Option<f64>,
-    /// Rotational mobility Γ.
+    /// Rotational mobility Γ; one, unless the scene says otherwise.
     #[serde(default)]
     pub rotational_mobility: f64,
     /// Flow alignment χ.
@@ -137,7 +137,7 @@ pub struct NematicRow {
     pub t99_charged: Option<f64>,
     /// Same for 99.9 %.
     pub t999_charged: Option<f64>,
-    /// Rate −d ln(F − F_final)/dt at the end of the discharge.
+    /// Rate −d ln(F − F_final)/dt at the end of the discharge, in 1/τ_N.
     pub late_rate: Option<f64>,
     /// Accepted steps of the discharge.
     pub steps: u64,
@@ -188,7 +188,7 @@ impl NematicRow {
     }
 }
 
-/// The battery at one time of its discharge.
+/// The battery at one time of its discharge: lengths in ξ_N, energies in L ξ_N, times in τ_N = ξ_N²/(Γ L), L the elastic constant.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct NematicSample {
     /// Time since the switch.
@@ -207,9 +207,9 @@ pub struct NematicSample {
     pub tilt: f64,
     /// Mean distance of the ring from the axis, while there is one.
     pub ring_radius: Option<f64>,
-    /// Largest speed, with flow.
+    /// Largest speed, in ξ_N/τ_N, with flow.
     pub max_speed: Option<f64>,
-    /// Power of the nematic's force on the fluid, with flow.
+    /// Power of the nematic's force on the fluid, in L ξ_N/τ_N, with flow.
     pub power: Option<f64>,
     /// Correlation of the velocity in three dimensions with the first one, over the cells of the fluid: 1 along it, −1 against it; empty
     /// without flow, and in tables older than the column.
@@ -217,7 +217,7 @@ pub struct NematicSample {
     pub flow_correlation: Option<f64>,
 }
 
-/// A point of a defect line, relative to the particle's centre.
+/// A point of a defect line, in ξ_N from the particle's centre; times in τ_N.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct LinePoint {
     /// Time since the switch; empty for the charged state.
@@ -233,11 +233,11 @@ pub struct LinePoint {
     /// Place.
     pub z: f64,
     /// Angle between the rotation axis of the director around the line and the line, in degrees: 0 is a +1/2 profile, 90 a
-    /// twisted one, 180 a −1/2 profile; empty where it cannot be told.
+    /// twisted one, 180 a −1/2 profile; empty where it is unclear.
     pub angle: Option<f64>,
 }
 
-/// A point of the vertical plane through the particle's centre, relative to it.
+/// A point of the vertical plane through the particle's centre, in ξ_N from it; times in τ_N.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct SlicePoint {
     /// Time since the switch; empty for the charged state.
@@ -254,11 +254,11 @@ pub struct SlicePoint {
     pub ny: f64,
     /// Director.
     pub nz: f64,
-    /// Velocity, with flow.
+    /// Velocity, in ξ_N/τ_N, with flow.
     pub ux: Option<f64>,
-    /// Velocity, with flow.
+    /// Velocity, in ξ_N/τ_N, with flow.
     pub uz: Option<f64>,
-    /// Vorticity about y, with flow.
+    /// Vorticity about y, in 1/τ_N, with flow.
     pub vorticity: Option<f64>,
 }
 

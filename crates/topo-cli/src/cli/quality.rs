@@ -4,10 +4,10 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use topo_lab::Preset;
 
 /// Presets that a command knows, each with what it means there.
-pub type Known = &'static [(Preset, &'static str)];
+pub type PresetNotes = &'static [(Preset, &'static str)];
 
 /// Figures and what is measured for them.
-pub const OF_FIGURES: Known = &[
+pub const OF_FIGURES: PresetNotes = &[
     (
         Preset::Draft,
         "14 knots at 17 twists, one cut each: minutes",
@@ -20,13 +20,13 @@ pub const OF_FIGURES: Known = &[
 ];
 
 /// Maps of the extremes, trade-offs and costs of terms.
-pub const OF_STUDIES: Known = &[
+pub const OF_STUDIES: PresetNotes = &[
     (Preset::Draft, "Few or small runs: minutes"),
     (Preset::Standard, "Every run to its end, finer references"),
 ];
 
 /// Tight shapes.
-pub const OF_SHAPES: Known = &[
+pub const OF_SHAPES: PresetNotes = &[
     (
         Preset::Draft,
         "4 vertices per unit of ropelength: within half a percent",
@@ -42,7 +42,7 @@ pub const OF_SHAPES: Known = &[
 ];
 
 /// Reads one of the presets `known`.
-pub fn quality(known: Known) -> impl TypedValueParser<Value = Preset> {
+pub fn quality(known: PresetNotes) -> impl TypedValueParser<Value = Preset> {
     let value = |(preset, help): &(Preset, &'static str)| {
         let value = PossibleValue::new(preset.name()).help(*help);
         match preset {

@@ -31,13 +31,13 @@ fn accuracy(preset: Preset, settings: &SweepSettings) -> Result<(), CliError> {
     }
     let stop = &settings.interrupt;
     let progress = Progress::start("accuracy", names.len() + ACCURACY_CASES.len());
-    let told = |event: Event<'_>| match event {
+    let report = |event: Event<'_>| match event {
         Event::Knot { name, .. } | Event::Case { name, .. } => progress.done(name),
         _ => {}
     };
     let rows = with_jobs(settings.jobs, || {
-        let shapes = tight_shapes(&names, &table, &scene.tighten, &settings.out, stop, &told)?;
-        measure_accuracy(&scene, &ACCURACY_CASES, &table, &shapes, stop, &told)
+        let shapes = tight_shapes(&names, &table, &scene.tighten, &settings.out, stop, &report)?;
+        measure_accuracy(&scene, &ACCURACY_CASES, &table, &shapes, stop, &report)
     })??;
     progress.finish();
     interrupt::check(stop)?;

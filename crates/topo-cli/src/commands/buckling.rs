@@ -44,7 +44,7 @@ pub fn run(args: &BucklingArgs) -> Result<String, CliError> {
         );
         // a charge takes minutes: each is kept as soon as it is there
         let kept = Mutex::new([&others[..], &known[..]].concat());
-        let told = |row: &BucklingRow| {
+        let report = |row: &BucklingRow| {
             progress.done(&format!(
                 "q = {}, h = {}, {}",
                 row.q,
@@ -57,7 +57,7 @@ pub fn run(args: &BucklingArgs) -> Result<String, CliError> {
                 note!("{error}");
             }
         };
-        let found = with_jobs(jobs, || buckling_study(&cases, &known, &stop, &told))??;
+        let found = with_jobs(jobs, || buckling_study(&cases, &known, &stop, &report))??;
         interrupt::check(&stop)?;
         progress.finish();
         rows = [others, found].concat();

@@ -11,7 +11,7 @@ use topo_view::ViewError;
 pub const DROPPED: [&str; 3] = ["cpu_seconds", "peak_bytes", "timings"];
 /// Files about the making of the results, and pictures of them.
 const SKIPPED: [&str; 2] = ["provenance.json", "index.html"];
-/// Most differences told one by one.
+/// Most differences listed one by one.
 const TOLD: usize = 20;
 
 pub(super) fn run(args: &CompareArgs) -> Result<(), CliError> {
@@ -44,17 +44,17 @@ pub fn differences(first: &Path, second: &Path, dropped: &[&str]) -> Result<Vec<
     let (a, b) = (files(first)?, files(second)?);
     let mut lines = Vec::new();
     for name in a.union(&b) {
-        let told = name.display();
+        let file = name.display();
         match (a.contains(name), b.contains(name)) {
-            (true, false) => lines.push(format!("{told}: only in {}", first.display())),
-            (false, true) => lines.push(format!("{told}: only in {}", second.display())),
+            (true, false) => lines.push(format!("{file}: only in {}", first.display())),
+            (false, true) => lines.push(format!("{file}: only in {}", second.display())),
             _ => {
                 let essence = |folder: &Path| essence(&folder.join(name), dropped);
                 let (x, y) = (essence(first)?, essence(second)?);
                 if x != y {
                     let place = x.iter().zip(&y).position(|(p, q)| p != q);
                     let line = place.map_or(x.len().min(y.len()), |k| k) + 1;
-                    lines.push(format!("{told}: differs from line {line} on"));
+                    lines.push(format!("{file}: differs from line {line} on"));
                 }
             }
         }
@@ -167,21 +167,21 @@ mod tests {
             folder("9", "0.25"),
             folder("9", "0.250"),
         );
-        let told = |x: &tempfile::TempDir, y: &tempfile::TempDir| {
+        let lines_of = |x: &tempfile::TempDir, y: &tempfile::TempDir| {
             differences(x.path(), y.path(), &DROPPED)
         };
-        assert_eq!(told(&a, &b).unwrap(), Vec::<String>::new());
+        assert_eq!(lines_of(&a, &b).unwrap(), Vec::<String>::new());
         assert_eq!(
-            told(&a, &c).unwrap(),
+            lines_of(&a, &c).unwrap(),
             ["elastic/sweep.csv: differs from line 2 on"]
         );
         let without_energy = differences(a.path(), c.path(), &["energy", "cpu_seconds", "timings"]);
         assert_eq!(without_energy.unwrap(), Vec::<String>::new());
         std::fs::remove_file(b.path().join("elastic/a/run.json")).unwrap();
-        let lines = told(&a, &b).unwrap();
+        let lines = lines_of(&a, &b).unwrap();
         assert!(lines.len() == 1 && lines[0].contains("only in"));
         std::fs::write(c.path().join("elastic/a/run.json"), "{").unwrap();
-        assert!(told(&a, &c).is_err());
+        assert!(lines_of(&a, &c).is_err());
         assert_eq!(
             differences(a.path(), &a.path().join("nowhere"), &DROPPED)
                 .unwrap_err()

@@ -14,7 +14,7 @@ use topo_view::data;
 /// A run that is refused, a folder that cannot be written, or a stop.
 pub fn run(args: &CostArgs) -> Result<String, CliError> {
     let stop = interrupt::install();
-    let told = |row: &TermCost| {
+    let report = |row: &TermCost| {
         note!(
             "{} {}, with: {}: {:.2} s",
             row.system,
@@ -23,7 +23,7 @@ pub fn run(args: &CostArgs) -> Result<String, CliError> {
             row.cpu_seconds
         );
     };
-    let rows = term_costs(args.quality, &stop, &told)?;
+    let rows = term_costs(args.quality, &stop, &report)?;
     let folder = args.out.join("cost");
     std::fs::create_dir_all(&folder).map_err(|source| CliError::File {
         path: folder.clone(),

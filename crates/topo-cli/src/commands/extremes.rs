@@ -62,14 +62,14 @@ pub fn run(args: &SystemsArgs) -> Result<(), CliError> {
         };
         let n_runs = n_extremes(system);
         let progress = Progress::start(system.name(), n_runs);
-        let told = |row: &StabilityRow| {
+        let report = |row: &StabilityRow| {
             progress.done(&format!(
                 "{} = {}, {} = {}",
                 row.axis_x, row.x, row.axis_y, row.y
             ));
         };
         let rows = with_jobs(jobs, || {
-            topo_lab::stability(system, args.quality, &known, &stop, &told)
+            topo_lab::stability(system, args.quality, &known, &stop, &report)
         })?;
         write_table(&kept, &rows)?;
         if rows.len() < n_runs {

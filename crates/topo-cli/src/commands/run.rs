@@ -5,7 +5,7 @@ use crate::batteries::Batteries;
 use crate::cli::RunArgs;
 use crate::compute;
 use crate::error::CliError;
-use topo_lab::{Options, SweepSettings, Wish};
+use topo_lab::{Goal, Options, SweepSettings};
 
 pub fn run(args: &RunArgs, batteries: &Batteries<'_>) -> Result<(), CliError> {
     if !(0.0..=1e9).contains(&args.checkpoint) {
@@ -25,19 +25,19 @@ pub fn run(args: &RunArgs, batteries: &Batteries<'_>) -> Result<(), CliError> {
         cuts: args.cuts.as_deref(),
         knots: args.knots.as_deref(),
         fields: args.fields,
-        wish: wish(args)?,
+        goal: goal(args)?,
     };
     compute::scene(batteries, &args.scene, &options, &settings)
 }
 
 /// What the options ask for instead of settings.
-fn wish(args: &RunArgs) -> Result<Option<Wish>, CliError> {
+fn goal(args: &RunArgs) -> Result<Option<Goal>, CliError> {
     let refused = |key, value: String| move |remedy| CliError::Argument { key, value, remedy };
     match (args.accuracy, &args.budget) {
-        (Some(error), _) => Wish::accuracy(error)
+        (Some(error), _) => Goal::accuracy(error)
             .map(Some)
             .map_err(refused("--accuracy", error.to_string())),
-        (None, Some(text)) => Wish::budget(text)
+        (None, Some(text)) => Goal::budget(text)
             .map(Some)
             .map_err(refused("--budget", text.clone())),
         (None, None) => Ok(None),

@@ -111,7 +111,7 @@ pub fn measure(
     };
     let progress: OnceLock<Progress> = OnceLock::new();
     let finished = Mutex::new((Instant::now(), Vec::<TradeoffRun>::new()));
-    let told = |event: TradeoffEvent<'_>| match event {
+    let report = |event: TradeoffEvent<'_>| match event {
         TradeoffEvent::Begin(n) => {
             progress.get_or_init(|| Progress::start(label, n));
         }
@@ -136,7 +136,7 @@ pub fn measure(
         known: &known,
         interrupt: stop,
         peak_bytes: &|run| allocation_counter::measure(run).bytes_max,
-        told: &told,
+        report: &report,
     };
     let runs = with_jobs(args.work.jobs.unwrap_or(0), || run(&work))??;
     if let Some(progress) = progress.into_inner() {

@@ -1,4 +1,4 @@
-//! What a command will take, told before the work, and what it took.
+//! What a command will take, said before the work, and what it took.
 
 use super::order::{Order, more_knots};
 use crate::duration::duration;
@@ -163,9 +163,9 @@ mod tests {
         e.n_calibrated = 7;
         e.wall_seconds = 20_000.0;
         e.bytes = 2_300_000_000;
-        let told = text("knot", &e);
-        assert!(told.starts_with("238 knots, 6 hours") && told.contains("2.30 GB"));
-        assert!(told.contains("7 finished"));
+        let found = text("knot", &e);
+        assert!(found.starts_with("238 knots, 6 hours") && found.contains("2.30 GB"));
+        assert!(found.contains("7 finished"));
         for (seconds, words) in [
             (0.2, "less than a second"),
             (12.4, "12 seconds"),

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::report::{Failures, Reporter, tell_taken};
-use super::{by_wish, estimate};
+use super::{by_goal, estimate};
 use crate::batteries::Batteries;
 use crate::error::CliError;
 use crate::output;
@@ -19,9 +19,9 @@ pub fn scene(
     let mut scene = read_scene(batteries, file)?;
     scene.change(options)?;
     let mut experiment = scene.experiment()?;
-    let grant = experiment.grant(settings.jobs)?;
-    if let Some(grant) = &grant {
-        by_wish::tell_grant(grant);
+    let choice = experiment.choose(settings.jobs)?;
+    if let Some(choice) = &choice {
+        by_goal::report_choice(choice);
     }
     estimate::tell(&experiment.stages(settings)?);
     let folder = experiment.results(&settings.out);
@@ -38,13 +38,13 @@ pub fn scene(
         say!("{line}");
     }
     tell_taken(swept.estimate(), swept.wall_seconds());
-    if let Some(grant) = &grant {
+    if let Some(choice) = &choice {
         let reporter = Reporter::new(experiment.label());
-        let checked = swept.check(grant, settings, &|event| reporter.report(event))?;
+        let checked = swept.check(choice, settings, &|event| reporter.report(event))?;
         reporter.finish(checked.as_ref().is_some_and(|c| c.is_interrupted))?;
         if let Some(checked) = checked {
             let path = checked.write(&folder)?;
-            by_wish::tell_errors(grant, &checked.errors, &path);
+            by_goal::report_errors(choice, &checked.errors, &path);
             failures.add(&checked.failed, &checked.folder);
         }
     }

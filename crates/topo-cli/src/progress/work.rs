@@ -117,16 +117,16 @@ mod tests {
         let unknown = Estimate::default();
         assert_eq!(work(9, &unknown, &[]).left(100.0), None);
         assert_eq!(work(2, &unknown, &[0.0, 0.0]).left(100.0), None);
-        let told = Estimate {
+        let expected = Estimate {
             reference_seconds: 10.0,
             wall_seconds: 120.0,
             threads: 2,
             ..unknown
         };
         // the estimate speaks until the first part is done, and not beyond its end
-        assert_eq!(work(9, &told, &[]).left(20.0), Some(100.0));
-        assert_eq!(work(9, &told, &[]).left(121.0), None);
+        assert_eq!(work(9, &expected, &[]).left(20.0), Some(100.0));
+        assert_eq!(work(9, &expected, &[]).left(121.0), None);
         // parts without a weight say nothing of weighed work
-        assert_eq!(work(9, &told, &[0.0]).left(20.0), Some(100.0));
+        assert_eq!(work(9, &expected, &[0.0]).left(20.0), Some(100.0));
     }
 }

@@ -56,8 +56,8 @@ impl Columns {
                 .zip(rows.column(column).skip(1))
                 .any(|(a, b)| a == b)
         };
-        let told = self.frames.iter().copied().chain(self.component);
-        let parameters: Vec<usize> = told.filter(|column| !repeats(*column)).collect();
+        let named = self.frames.iter().copied().chain(self.component);
+        let parameters: Vec<usize> = named.filter(|column| !repeats(*column)).collect();
         let stays = |column: &usize| !parameters.contains(column);
         self.frames.retain(stays);
         self.component = self.component.filter(stays);
@@ -137,7 +137,7 @@ impl Columns {
     /// Three are the coordinates; four are, if one of them counts the rows; after a first column of names, as in molecular files, the next three are.
     ///
     /// # Errors
-    /// It cannot be told which are the coordinates.
+    /// It is unclear which are the coordinates.
     pub(super) fn nameless(first: &str, rows: &Rows) -> Result<Self, String> {
         let mut cells = Vec::new();
         split(first, &mut cells);

@@ -2,7 +2,7 @@
 
 use crate::V;
 
-/// How many times the longest edge the gap between the ends may measure for a curve of which nothing is told to be closed.
+/// How many times the longest edge the gap between the ends may measure for a curve of which nothing says how to be closed.
 const LONGEST_CLOSING: f64 = 2.0;
 
 /// One component of a file: its vertices, and whether it is closed where the file says so.

@@ -60,8 +60,8 @@ fn curves_survive_every_format() {
             write_curve(&path, curve).expect("written");
             let found = read_curve(&path).expect("read");
             assert_eq!(found.vertices, curve.vertices(), "{name}");
-            let told = name.to_ascii_lowercase().ends_with("vect");
-            assert_eq!(found.closed, told.then_some(curve.is_closed()));
+            let is_vect = name.to_ascii_lowercase().ends_with("vect");
+            assert_eq!(found.closed, is_vect.then_some(curve.is_closed()));
             assert_eq!(found.is_closed(), curve.is_closed(), "{name}");
         }
     }
@@ -234,15 +234,15 @@ fn files_as_people_have_them() {
 
 #[test]
 fn what_was_concluded_is_said() {
-    let told = |text: &[u8], format| parse(text, format).expect("read").notes.join("; ");
+    let notes = |text: &[u8], format| parse(text, format).expect("read").notes.join("; ");
     assert!(
-        told(b"0 0 0 # \xe9\n1 0 0\n0 1 0\n", Xyz).contains("line 1: the byte 0xe9 is not UTF-8")
+        notes(b"0 0 0 # \xe9\n1 0 0\n0 1 0\n", Xyz).contains("line 1: the byte 0xe9 is not UTF-8")
     );
-    assert!(told(&utf16("0 0 0\n1 0 0\n", true), Xyz).contains("UTF-16"));
-    assert!(told(b"1 0 0 0\n2 1 0 0\n3 1 1 0\n", Xyz).contains("column 1 counts"));
-    assert!(told(b"x,y,z,charge\n0,0,0,1\n1,0,0,2\n", Csv).contains("`charge`"));
-    assert!(told(b"C 0 0 0 1\nC 1 0 0 2\n", Xyz).contains("columns 5 to 5"));
-    assert_eq!(told(b"0 0 0\n1 0 0\n", Xyz), "");
+    assert!(notes(&utf16("0 0 0\n1 0 0\n", true), Xyz).contains("UTF-16"));
+    assert!(notes(b"1 0 0 0\n2 1 0 0\n3 1 1 0\n", Xyz).contains("column 1 counts"));
+    assert!(notes(b"x,y,z,charge\n0,0,0,1\n1,0,0,2\n", Csv).contains("`charge`"));
+    assert!(notes(b"C 0 0 0 1\nC 1 0 0 2\n", Xyz).contains("columns 5 to 5"));
+    assert_eq!(notes(b"0 0 0\n1 0 0\n", Xyz), "");
 }
 
 #[test]
@@ -359,8 +359,8 @@ fn far_ends_make_an_open_curve() {
             assert_eq!(CurveComponent::new(vertices, None).is_closed(), closed);
         }
     }
-    let told = parse("VECT\n1 3 0\n-3\n0\n0 0 0 1 0 0 9 9 9\n", Vect).expect("told");
-    assert!(told.components[0].is_closed());
+    let parsed = parse("VECT\n1 3 0\n-3\n0\n0 0 0 1 0 0 9 9 9\n", Vect).expect("read");
+    assert!(parsed.components[0].is_closed());
 }
 
 #[test]

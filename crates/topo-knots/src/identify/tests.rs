@@ -62,7 +62,7 @@ fn jones_tells_what_the_signature_cannot() {
     }
 }
 
-/// Without a Jones polynomial in the table, the two cannot be told apart, and that is said.
+/// Without a Jones polynomial in the table, the two are not distinguished, and that is said.
 #[test]
 fn what_fits_several_knots_is_called_ambiguous() {
     let mut table = KnotTable::default();

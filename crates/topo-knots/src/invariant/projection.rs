@@ -44,7 +44,7 @@ pub(crate) fn least_crossing(
 /// What a view shows.
 enum View {
     Diagram(Diagram),
-    /// More crossings than wanted, or a vertex on an edge, or crossings of an edge too close to be told apart.
+    /// More crossings than wanted, or a vertex on an edge, or crossings of an edge too close to be kept apart.
     Unusable,
     /// The curve runs through itself.
     Touching,
@@ -75,7 +75,7 @@ struct Viewer {
 
 /// Distance of the eye in units of the half extents: the curve lies in a box within 1.8.
 const EYE: f64 = 8.0;
-/// Extent along one axis, in units of the largest, below which it is always stretched: little could be told apart otherwise.
+/// Extent along one axis, in units of the largest, below which it is always stretched: little could be resolved otherwise.
 const SLENDER: f64 = 1e-3;
 /// Margin of the picture in its units: far above its rounding.
 const MARGIN: f64 = 1e-11;

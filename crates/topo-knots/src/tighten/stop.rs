@@ -1,4 +1,4 @@
-//! The wish to end early, and whether it was heeded: then what came out is not what the settings ask for.
+//! The goal to end early, and whether it was heeded: then what came out is not what the settings ask for.
 
 use std::cell::Cell;
 
@@ -23,7 +23,7 @@ impl Stop {
         }
     }
 
-    /// Whether to leave the rest undone; who is told so does it.
+    /// Whether to leave the rest undone; who sees it does it.
     pub(crate) fn asks(&self) -> bool {
         if self.interrupt.is_requested() {
             self.is_heeded.set(true);

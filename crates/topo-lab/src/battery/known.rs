@@ -1,4 +1,4 @@
-//! The battery of a scene file, told by its table.
+//! The battery of a scene file, known by its table.
 
 use std::path::Path;
 

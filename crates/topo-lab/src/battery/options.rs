@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::LabError;
-use crate::wish::Wish;
+use crate::goal::Goal;
 
 /// What a command line says above a scene; a battery takes some of it and refuses the rest.
 #[derive(Debug, Clone, Copy, Default)]
@@ -15,7 +15,7 @@ pub struct Options<'a> {
     /// Keep whole fields at each time looked at: [`SweepSettings::keep_fields`](crate::SweepSettings::keep_fields).
     pub fields: bool,
     /// An accuracy or a budget instead of settings.
-    pub wish: Option<Wish>,
+    pub goal: Option<Goal>,
 }
 
 /// What an option that has no value is called to have.
@@ -31,7 +31,7 @@ impl Options<'_> {
         self.no_fields(remedy)?;
         self.no_knots(remedy)?;
         self.no_cuts(remedy)?;
-        self.no_wish(remedy)
+        self.no_goal(remedy)
     }
 
     /// Refuses `--cuts`; `remedy` says why and what to do.
@@ -67,10 +67,10 @@ impl Options<'_> {
     ///
     /// # Errors
     /// If one is given.
-    pub fn no_wish(&self, remedy: &str) -> Result<(), LabError> {
-        match self.wish {
-            Some(Wish::Accuracy(error)) => Err(refused("--accuracy", &error.to_string(), remedy)),
-            Some(wish @ Wish::Budget(_)) => Err(refused("--budget", &wish.to_string(), remedy)),
+    pub fn no_goal(&self, remedy: &str) -> Result<(), LabError> {
+        match self.goal {
+            Some(Goal::Accuracy(error)) => Err(refused("--accuracy", &error.to_string(), remedy)),
+            Some(goal @ Goal::Budget(_)) => Err(refused("--budget", &goal.to_string(), remedy)),
             None => Ok(()),
         }
     }

@@ -6,9 +6,9 @@ use topo_analysis::write_table;
 
 use crate::LabError;
 use crate::cost::Estimate;
+use crate::goal::{Choice, ErrorRow};
 use crate::progress::{Event, SweepSettings};
 use crate::sweep::FailedCase;
-use crate::wish::{ErrorRow, Grant};
 
 /// An experiment that can be estimated and run; every [`Experiment`](crate::Experiment) is one.
 pub trait Sweep {
@@ -18,11 +18,11 @@ pub trait Sweep {
     /// Where its tables lie below an output folder.
     fn results(&self, out: &Path) -> PathBuf;
 
-    /// Picks the settings that grant its wish; nothing without one.
+    /// Picks the settings that meets its goal; nothing without one.
     ///
     /// # Errors
-    /// A wish that no measured setting grants, with what can be had.
-    fn grant(&mut self, jobs: usize) -> Result<Option<Grant>, LabError>;
+    /// A goal that no measured setting meets, with what is possible.
+    fn choose(&mut self, jobs: usize) -> Result<Option<Choice>, LabError>;
 
     /// What of it is to be done, stage after stage; nothing where all is finished.
     ///
@@ -108,7 +108,7 @@ pub trait Swept {
     /// As [`Sweep::sweep`].
     fn check(
         &self,
-        grant: &Grant,
+        choice: &Choice,
         settings: &SweepSettings,
         progress: &(dyn Fn(Event<'_>) + Sync),
     ) -> Result<Option<Checked>, LabError>;

@@ -1,4 +1,4 @@
-//! The speed of this machine, told by a short run that is always the same.
+//! The speed of this machine, from a short run that is always the same.
 
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
@@ -70,8 +70,8 @@ fn measured(probe: &Probe, threads: usize) -> Pace {
 /// The pace that runs of (processor, elapsed) seconds tell when `crowd` threads share a processor; that of the models' machine
 /// where they tell nothing.
 fn pace_of(runs: &[Option<(f64, f64)>], reference: f64, crowd: f64) -> Pace {
-    let told = runs.iter().flatten();
-    let (cpu, wall) = told.fold((0.0, 0.0), |sum, run| (sum.0 + run.0, sum.1 + run.1));
+    let measured = runs.iter().flatten();
+    let (cpu, wall) = measured.fold((0.0, 0.0), |sum, run| (sum.0 + run.0, sum.1 + run.1));
     let n = runs.iter().flatten().count();
     if n == 0 || cpu < LEAST * n as f64 {
         return Pace {

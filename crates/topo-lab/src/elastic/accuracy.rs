@@ -9,7 +9,7 @@ use topo_knots::{KnotEntry, KnotTable};
 use topo_rod::{Accuracy, CutSite, Ends, Reading, cut_circle_time};
 
 use super::case::ElasticCase;
-use super::job::CaseJob;
+use super::case_run::CaseInputs;
 use super::run::charge;
 use super::scene::ElasticScene;
 use crate::LabError;
@@ -111,15 +111,15 @@ pub(crate) struct MeasuredDischarge {
 
 /// Charges a case, cuts it and follows the discharge, writing nothing.
 pub(crate) fn measured_discharge(
-    job: &CaseJob<'_>,
+    inputs: &CaseInputs<'_>,
     site: CutSite,
     interrupt: &Interrupt,
 ) -> Result<MeasuredDischarge, LabError> {
     let mut hooks = RunHooks::new(interrupt);
-    let charged = charge(job, &mut hooks, None)?.rod;
+    let charged = charge(inputs, &mut hooks, None)?.rod;
     let last = charged.record().samples.last();
     let energy = last.map_or(f64::NAN, |s| s.elastic());
-    let run = job.discharge(&charged, site, &job.scene.discharge, &mut hooks)?;
+    let run = inputs.discharge(&charged, site, &inputs.scene.discharge, &mut hooks)?;
     let parts = run.record.report.own.parts.elastic();
     let times = DischargeTimes::of(&run.record.curve, &parts, run.start, &ELASTIC_SHARES);
     let at = |share| times.at(share).map(|t| t.value);
@@ -213,13 +213,13 @@ pub fn measure_accuracy(
             let run = |scene: &ElasticScene, site: CutSite| {
                 let clock = CpuClock::start();
                 let case = scene.case(&name, Some(twist));
-                let job = CaseJob {
+                let inputs = CaseInputs {
                     scene,
                     case: &case,
                     tight,
                     table,
                 };
-                measured_discharge(&job, site, interrupt).map(|found| (found, clock.seconds()))
+                measured_discharge(&inputs, site, interrupt).map(|found| (found, clock.seconds()))
             };
             let (coarse, cpu_seconds) = run(scene, CutSite::MaximumEnergyDensity)?;
             let exact = exact_discharge(scene, &case, &*table.get(&name)?, coarse.cut);

@@ -274,7 +274,7 @@ mod tests {
         assert!(Cuts::All(8).clash(8).is_none() && Cuts::All(9).clash(8).is_some());
         let at = |list: &[f64]| Cuts::At(list.to_vec()).clash(100);
         assert_eq!(at(&[0.0, 0.01, 0.5]), None);
-        let told = at(&[0.5, 0.0, 0.998]).unwrap();
-        assert!(told.contains("0 and 0.998"), "{told}");
+        let message = at(&[0.5, 0.0, 0.998]).unwrap();
+        assert!(message.contains("0 and 0.998"), "{message}");
     }
 }

@@ -35,11 +35,11 @@ use super::defaults::{self, poisson_ratio_of};
 use super::keys::{EDGES, ROD_KEYS};
 use super::scene::{ElasticScene, OwnKnots};
 use crate::LabError;
+use crate::goal::{Goal, GoalOr, budget};
 use crate::preset::Preset;
 use crate::scene::{
     Axis, Document, Numbers, axes, folder_of, numbers, put_axes, read_text, remove,
 };
-use crate::wish::{Wish, WishOr, budget};
 use topo_analysis::TimelineSettings;
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -100,7 +100,7 @@ struct File {
     #[serde(default)]
     discharge: DischargeTable,
     #[serde(default)]
-    accuracy: WishOr<AccuracyTable>,
+    accuracy: GoalOr<AccuracyTable>,
     budget: Option<String>,
     knots: Option<String>,
 }
@@ -108,8 +108,8 @@ struct File {
 impl File {
     fn asked(&self) -> AccuracyTable {
         match &self.accuracy {
-            WishOr::Settings(asked) => asked.clone(),
-            WishOr::Wish(_) => AccuracyTable::default(),
+            GoalOr::Settings(asked) => asked.clone(),
+            GoalOr::Goal(_) => AccuracyTable::default(),
         }
     }
 
@@ -146,7 +146,7 @@ impl File {
             ..
         } = self.case();
         let path = document.path();
-        let (asked, wish) = self
+        let (asked, goal) = self
             .accuracy
             .with_budget(self.budget.as_deref())
             .map_err(|(key, text, remedy)| document.wrong(key, text, remedy))?;
@@ -189,7 +189,7 @@ impl File {
             },
             axes,
             own_knots: self.knots.map(|written| OwnKnots { written, beside }),
-            wish,
+            goal,
             ..standard
         })
     }
@@ -252,7 +252,7 @@ impl ElasticScene {
                 closures: Some(self.timeline.closures),
                 ends: self.discharge.ends,
             },
-            accuracy: WishOr::Settings(AccuracyTable {
+            accuracy: GoalOr::Settings(AccuracyTable {
                 preset: self.preset,
                 edges: Some(rod.n_edges),
                 tolerance: Some(self.accuracy.tolerance),
@@ -261,23 +261,23 @@ impl ElasticScene {
                 reuse: Some(self.accuracy.reuse),
                 max_steps: Some(self.accuracy.max_steps),
             }),
-            budget: budget(self.wish),
+            budget: budget(self.goal),
             knots: self.own_knots.as_ref().map(|own| own.written.clone()),
         };
-        if let Some(Wish::Accuracy(error)) = self.wish {
-            file.accuracy = WishOr::Wish(error);
+        if let Some(Goal::Accuracy(error)) = self.goal {
+            file.accuracy = GoalOr::Goal(error);
         }
         // Tables of numbers and names always have a text.
         let mut file = toml::Table::try_from(&file).unwrap_or_default();
-        if budget(self.wish).is_some() {
+        if budget(self.goal).is_some() {
             file.remove("accuracy");
         }
         for (key, _) in check::idle(self) {
             remove(key, &mut file);
         }
-        let has_wish = self.wish.is_some();
+        let has_goal = self.goal.is_some();
         let axes = self.axes.iter();
-        let kept = axes.filter(|axis| !(has_wish && axis.key() == EDGES));
+        let kept = axes.filter(|axis| !(has_goal && axis.key() == EDGES));
         put_axes(kept, &mut file);
         toml::to_string(&file).unwrap_or_default()
     }

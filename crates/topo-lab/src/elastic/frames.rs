@@ -5,7 +5,7 @@ use topo_core::{Interrupt, RunHooks};
 use topo_knots::KnotTable;
 use topo_rod::{CutSite, DischargeSettings};
 
-use super::job::CaseJob;
+use super::case_run::CaseInputs;
 use super::run::charge;
 use super::scene::ElasticScene;
 use crate::LabError;
@@ -41,7 +41,7 @@ pub fn discharge_frames(
     let Some(tight) = shapes.get(&case.knot) else {
         return Ok(Vec::new());
     };
-    let job = CaseJob {
+    let inputs = CaseInputs {
         scene,
         case: &case,
         tight,
@@ -49,7 +49,7 @@ pub fn discharge_frames(
     };
     let area = std::f64::consts::PI;
     let mut hooks = RunHooks::new(interrupt);
-    let charged = charge(&job, &mut hooks, None)?.rod;
+    let charged = charge(&inputs, &mut hooks, None)?.rod;
     let mut frames = vec![ShapeFrame {
         time: None,
         vertices: charged.state().vertices().to_vec(),
@@ -61,7 +61,7 @@ pub fn discharge_frames(
         ..scene.discharge
     };
     let site = CutSite::MaximumEnergyDensity;
-    let run = job.discharge(&charged, site, &settings, &mut hooks)?;
+    let run = inputs.discharge(&charged, site, &settings, &mut hooks)?;
     frames.extend(run.record.samples.iter().map(|s| {
         let density = charged.battery().energy_density(&s.state);
         ShapeFrame {

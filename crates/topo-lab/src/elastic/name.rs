@@ -78,13 +78,13 @@ impl ElasticScene {
         }
     }
 
-    /// The scene as [`text`](Self::text) with the settings themselves where a wish picked them.
+    /// The scene as [`text`](Self::text) with the settings themselves where a goal picked them.
     pub fn resolved_text(&self) -> String {
         // the folder of knots is named so that it is found from anywhere
         let own_knots = self.own_knots.as_ref().map(OwnKnots::path);
         let own_knots = own_knots.map(|path| std::path::absolute(&path).unwrap_or(path));
         let scene = Self {
-            wish: None,
+            goal: None,
             own_knots: own_knots.as_deref().map(OwnKnots::at),
             ..self.clone()
         };

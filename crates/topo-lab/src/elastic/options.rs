@@ -9,7 +9,7 @@ use crate::battery::{Options, Scene, Sweep, refused};
 impl Scene for ElasticScene {
     fn change(&mut self, options: &Options<'_>) -> Result<(), LabError> {
         options.no_fields("a fibre has no field to keep; leave it out")?;
-        self.wish = options.wish.or(self.wish);
+        self.goal = options.goal.or(self.goal);
         if let Some(folder) = options.knots {
             self.own_knots = Some(OwnKnots::at(folder));
         }

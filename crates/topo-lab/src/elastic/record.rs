@@ -4,7 +4,7 @@ use serde::Serialize;
 use serde_json::json;
 use topo_rod::{ChargedRod, Guards, RodBattery, RodSample};
 
-use super::job::{CaseJob, FollowedCut};
+use super::case_run::{CaseInputs, CutResults};
 use super::observable::{Observable, further};
 use crate::LabError;
 use crate::folder::Outcome;
@@ -13,10 +13,10 @@ use topo_analysis::{Further, SweepRow, Timeline};
 
 /// Everything that a case has made.
 #[derive(Clone, Copy)]
-pub(super) struct MadeCase<'a> {
-    pub job: &'a CaseJob<'a>,
+pub(super) struct CaseResults<'a> {
+    pub inputs: &'a CaseInputs<'a>,
     pub charged: &'a ChargedRod,
-    pub runs: &'a [FollowedCut],
+    pub runs: &'a [CutResults],
     pub outcome: &'a Outcome<SweepRow>,
     pub charge_seconds: f64,
 }
@@ -117,15 +117,15 @@ fn snapshot_indices(samples: &[RodSample], start: f64) -> Vec<usize> {
 }
 
 /// Writes the folder of a case; what is there of an earlier run is replaced.
-pub(super) fn write_case(made: &MadeCase<'_>, place: &Place<'_>) -> Result<(), LabError> {
-    let MadeCase {
-        job,
+pub(super) fn write_case(made: &CaseResults<'_>, place: &Place<'_>) -> Result<(), LabError> {
+    let CaseResults {
+        inputs,
         charged,
         runs,
         outcome,
         charge_seconds,
     } = *made;
-    let observables = &job.scene.observables;
+    let observables = &inputs.scene.observables;
     let mut folder = place.open()?;
     folder.table("charged.csv", &charged_vertices(charged))?;
     let samples = &charged.record().samples;
@@ -172,7 +172,7 @@ fn charged_vertices(charged: &ChargedRod) -> Vec<ChargedVertex> {
 }
 
 fn run_series<'a>(
-    run: &'a FollowedCut,
+    run: &'a CutResults,
     observables: &'a [Observable],
 ) -> impl Iterator<Item = SeriesRow<'a>> {
     let (discharge, timeline) = (&run.discharge, &run.timeline);
@@ -180,7 +180,7 @@ fn run_series<'a>(
     samples.map(move |(k, s)| series_row(Some(discharge.at), s, Some((timeline, k)), observables))
 }
 
-fn run_snapshots(battery: &RodBattery, run: &FollowedCut) -> Vec<SnapshotVertex> {
+fn run_snapshots(battery: &RodBattery, run: &CutResults) -> Vec<SnapshotVertex> {
     let discharge = &run.discharge;
     let samples = &discharge.record.samples;
     let mut snapshots = Vec::new();
@@ -208,20 +208,23 @@ fn run_snapshots(battery: &RodBattery, run: &FollowedCut) -> Vec<SnapshotVertex>
 }
 
 /// What `run.json` says of the case.
-fn about(made: &MadeCase<'_>) -> Result<About, LabError> {
-    let MadeCase {
-        job, charged, runs, ..
+fn about(made: &CaseResults<'_>) -> Result<About, LabError> {
+    let CaseResults {
+        inputs,
+        charged,
+        runs,
+        ..
     } = *made;
-    let CaseJob {
+    let CaseInputs {
         scene,
         case,
         tight,
         table,
-    } = *job;
+    } = *inputs;
     let entry = table.get(&case.knot)?;
     let cuts: Vec<_> = runs
         .iter()
-        .map(|FollowedCut { discharge: d, times, times_after_cut, timeline, row, .. }| {
+        .map(|CutResults { discharge: d, times, times_after_cut, timeline, row, .. }| {
             json!({
                 "cut": d.at, "energy_removed_by_cut": d.removed, "elastic_energy_before_cut": d.start, "elastic_energy_after_cut": d.after_cut,
                 "tips_parted": d.parted, "times": times, "times_after_cut": times_after_cut, "knot_sequence": timeline.sequence(), "t_untie": row.t_untie, "report": d.record.report,

@@ -9,12 +9,12 @@ use topo_rod::{
     ChargedRod, CutSite, Discharge, Guards, PhaseReport, RodBattery, RodSample, RunHooks,
 };
 
+use super::case_run::{CaseInputs, CutResults};
 use super::choices::{Cuts, NEAR_TIE};
 use super::identity::starts_from_two_images;
 use super::imperfection::perturbed;
-use super::job::{CaseJob, FollowedCut};
 use super::observable::further;
-use super::record::{MadeCase, write_case};
+use super::record::{CaseResults, write_case};
 use crate::LabError;
 use crate::folder::{Outcome, forget_checkpoints};
 use crate::sweep::Place;
@@ -45,17 +45,17 @@ pub(crate) struct ChargedCase {
 /// # Validation
 /// `amphichiral_knots_are_charged_from_both_images_and_the_other_is_reported`, `law_mirrored_knots_give_mirrored_runs`.
 pub(crate) fn charge(
-    job: &CaseJob<'_>,
+    inputs: &CaseInputs<'_>,
     hooks: &mut RunHooks<'_>,
     kept: Option<[&Path; 2]>,
 ) -> Result<ChargedCase, LabError> {
-    let CaseJob {
+    let CaseInputs {
         scene,
         case,
         tight,
         table,
-    } = *job;
-    let refuse = |source| job.refused(source);
+    } = *inputs;
+    let refuse = |source| inputs.refused(source);
     let entry = table.get(&case.knot)?;
     let centreline = tight.centreline()?;
     let battery = RodBattery::new(&case.rod, &scene.accuracy, Guards::default(), &centreline);
@@ -111,33 +111,36 @@ pub(crate) fn charge(
 
 /// Runs a case and writes its folder; `None` when interrupted: then its checkpoints stay.
 pub(crate) fn run(
-    job: &CaseJob<'_>,
+    inputs: &CaseInputs<'_>,
     place: &Place<'_>,
 ) -> Result<Option<Outcome<SweepRow>>, LabError> {
-    place.or_anew(|| attempt(job, place))
+    place.or_anew(|| attempt(inputs, place))
 }
 
-fn attempt(job: &CaseJob<'_>, place: &Place<'_>) -> Result<Option<Outcome<SweepRow>>, LabError> {
+fn attempt(
+    inputs: &CaseInputs<'_>,
+    place: &Place<'_>,
+) -> Result<Option<Outcome<SweepRow>>, LabError> {
     forget_checkpoints(place.folder, place.fingerprint)?;
     let paths = ["charge", "charge-of-image"].map(|phase| place.checkpoint(phase));
     let mut tell = |p: &Progress| place.progressed(p);
     let mut hooks = RunHooks::new(&place.settings.interrupt)
         .with_progress(&mut tell)
         .with_checkpoint(&paths[0], place.settings.checkpoint_seconds);
-    let charged_case = charge(job, &mut hooks, Some([&paths[0], &paths[1]]))?;
+    let charged_case = charge(inputs, &mut hooks, Some([&paths[0], &paths[1]]))?;
     if hooks.is_interrupted() {
         return Ok(None);
     }
     let charge_seconds = charged_case.cpu_seconds;
     let charged = &charged_case.rod;
-    let sites = sites(job, charged);
-    let mut base = charged_row(job, charged);
+    let sites = sites(inputs, charged);
+    let mut base = charged_row(inputs, charged);
     base.energy_other_image = charged_case.energy_other_image;
     let mut runs = Vec::new();
     if charged.record().report.stop.is_success() {
         for (k, &at) in sites.iter().enumerate() {
             hooks.keep_in(&place.checkpoint(&format!("discharge-{k}")));
-            let Some(mut run) = follow(job, charged, at, &mut hooks)? else {
+            let Some(mut run) = follow(inputs, charged, at, &mut hooks)? else {
                 return Ok(None);
             };
             let cpu_seconds = run.cpu_seconds + charge_seconds / sites.len() as f64;
@@ -156,8 +159,8 @@ fn attempt(job: &CaseJob<'_>, place: &Place<'_>) -> Result<Option<Outcome<SweepR
         rows,
         failure: failure(charged, &runs),
     };
-    let made = MadeCase {
-        job,
+    let made = CaseResults {
+        inputs,
         charged,
         runs: &runs,
         outcome: &outcome,
@@ -168,7 +171,7 @@ fn attempt(job: &CaseJob<'_>, place: &Place<'_>) -> Result<Option<Outcome<SweepR
 }
 
 /// Writes the folder of a case; its checkpoints are of no more use then.
-fn finish(made: &MadeCase<'_>, place: &Place<'_>) -> Result<(), LabError> {
+fn finish(made: &CaseResults<'_>, place: &Place<'_>) -> Result<(), LabError> {
     let folder = place.folder;
     if let Err(error) = write_case(made, place) {
         // a folder without its run.json is of no use to anybody; what matters is the first error
@@ -181,8 +184,8 @@ fn finish(made: &MadeCase<'_>, place: &Place<'_>) -> Result<(), LabError> {
 }
 
 /// Where the scene cuts the rod.
-fn sites(job: &CaseJob<'_>, charged: &ChargedRod) -> Vec<f64> {
-    let CaseJob { scene, case, .. } = *job;
+fn sites(inputs: &CaseInputs<'_>, charged: &ChargedRod) -> Vec<f64> {
+    let CaseInputs { scene, case, .. } = *inputs;
     match &scene.cuts {
         _ if scene.fixed_cuts.is_some() => {
             let fixed = scene.fixed_cuts.as_ref();
@@ -204,23 +207,23 @@ fn sites(job: &CaseJob<'_>, charged: &ChargedRod) -> Vec<f64> {
 
 /// Follows the discharge after a cut; its row is still blank. `None` when interrupted.
 fn follow(
-    job: &CaseJob<'_>,
+    inputs: &CaseInputs<'_>,
     charged: &ChargedRod,
     at: f64,
     hooks: &mut RunHooks<'_>,
-) -> Result<Option<FollowedCut>, LabError> {
-    let discharge = job.discharge(charged, CutSite::At(at), &job.scene.discharge, hooks)?;
+) -> Result<Option<CutResults>, LabError> {
+    let discharge = inputs.discharge(charged, CutSite::At(at), &inputs.scene.discharge, hooks)?;
     if hooks.is_interrupted() {
         return Ok(None);
     }
     let clock = CpuClock::start();
-    let timeline = timeline(job, &discharge)?;
+    let timeline = timeline(inputs, &discharge)?;
     let (curve, parts) = (
         &discharge.record.curve,
         discharge.record.report.own.parts.elastic(),
     );
     let released = |of: f64| DischargeTimes::of(curve, &parts, of, &ELASTIC_SHARES);
-    Ok(Some(FollowedCut {
+    Ok(Some(CutResults {
         times: released(discharge.start),
         times_after_cut: released(discharge.after_cut),
         cpu_seconds: discharge.record.report.cpu_seconds + clock.seconds(),
@@ -231,7 +234,7 @@ fn follow(
 }
 
 /// Why a case did not come to its end.
-fn failure(charged: &ChargedRod, runs: &[FollowedCut]) -> Option<String> {
+fn failure(charged: &ChargedRod, runs: &[CutResults]) -> Option<String> {
     let stop = &charged.record().report.stop;
     if !stop.is_success() {
         return Some(format!("charge stopped: {stop}"));
@@ -245,8 +248,8 @@ fn failure(charged: &ChargedRod, runs: &[FollowedCut]) -> Option<String> {
 
 /// Knot types of a discharge. Those of a mirror image are found on the image of its shapes, which is that of the knot itself: a
 /// type is that of closures in some directions, and these would be others.
-fn timeline(job: &CaseJob<'_>, discharge: &Discharge) -> Result<Timeline, LabError> {
-    let is_mirror_image = job.table.get(&job.case.knot)?.is_mirror_image();
+fn timeline(inputs: &CaseInputs<'_>, discharge: &Discharge) -> Result<Timeline, LabError> {
+    let is_mirror_image = inputs.table.get(&inputs.case.knot)?.is_mirror_image();
     let seen = |s: &RodSample| -> Vec<Vector3<f64>> {
         let side = if is_mirror_image { -1.0 } else { 1.0 };
         let vertices = s.state.vertices().iter();
@@ -256,10 +259,10 @@ fn timeline(job: &CaseJob<'_>, discharge: &Discharge) -> Result<Timeline, LabErr
     let curves: Vec<_> = samples.iter().map(seen).collect();
     let timed: Vec<_> = samples.iter().zip(&curves).collect();
     let timed: Vec<_> = timed.iter().map(|(s, x)| (s.time, x.as_slice())).collect();
-    let scene = job.scene;
-    let timeline = Timeline::of(&timed, job.table, scene.timeline, job.case.seed)?;
+    let scene = inputs.scene;
+    let timeline = Timeline::of(&timed, inputs.table, scene.timeline, inputs.case.seed)?;
     Ok(match is_mirror_image {
-        true => timeline.mirrored(job.table),
+        true => timeline.mirrored(inputs.table),
         false => timeline,
     })
 }
@@ -284,8 +287,8 @@ fn phase_warnings(phase: &str, report: &PhaseReport, warnings: &mut Warnings) {
 }
 
 /// The part of a row that all cuts share.
-fn charged_row(job: &CaseJob<'_>, charged: &ChargedRod) -> SweepRow {
-    let CaseJob { case, table, .. } = *job;
+fn charged_row(inputs: &CaseInputs<'_>, charged: &ChargedRod) -> SweepRow {
+    let CaseInputs { case, table, .. } = *inputs;
     let record = charged.record();
     let report = &record.report;
     let mut row = SweepRow {
@@ -293,14 +296,14 @@ fn charged_row(job: &CaseJob<'_>, charged: &ChargedRod) -> SweepRow {
         min_distance_over_contact: report.own.min_distance_over_contact,
         steps: report.n_steps,
         rejected: report.rejections.total(),
-        ..job.scene.blank_row(job.case)
+        ..inputs.scene.blank_row(inputs.case)
     };
     if let Some(last) = record.samples.last() {
         row.energy = last.elastic();
         row.bend = last.stored.of("bend");
         row.twist_energy = last.stored.of("twist");
         row.stretch = last.stored.of("stretch");
-        row.further = further(last, &job.scene.observables);
+        row.further = further(last, &inputs.scene.observables);
         (row.writhe, row.total_twist) = (last.writhe, last.total_twist);
     }
     phase_warnings("charge", report, &mut row.warnings);
@@ -320,7 +323,7 @@ fn charged_row(job: &CaseJob<'_>, charged: &ChargedRod) -> SweepRow {
     row
 }
 
-fn discharge_row(base: &SweepRow, run: &FollowedCut, cpu_seconds: f64) -> SweepRow {
+fn discharge_row(base: &SweepRow, run: &CutResults, cpu_seconds: f64) -> SweepRow {
     let report = &run.discharge.record.report;
     let at = |times: &DischargeTimes, share| times.at(share).map(|t| t.value);
     let (times, after_cut) = (&run.times, &run.times_after_cut);
@@ -379,13 +382,13 @@ mod tests {
         let of = |rod: &ChargedRod| rod.record().samples.last().unwrap().elastic();
         let run = |twist: Option<f64>| {
             let case = scene.case("6_3", twist);
-            let job = CaseJob {
+            let inputs = CaseInputs {
                 scene: &scene,
                 case: &case,
                 tight: &tight,
                 table: &table,
             };
-            let charged = charge(&job, &mut RunHooks::default(), None).unwrap();
+            let charged = charge(&inputs, &mut RunHooks::default(), None).unwrap();
             // the one curve alone
             let curve = tight.centreline().unwrap();
             let battery =

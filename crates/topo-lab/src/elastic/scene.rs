@@ -15,9 +15,9 @@ use super::keys::{EDGES, ROD_KEYS};
 use super::observable::Observable;
 use super::own_term::OwnTerm;
 use crate::LabError;
+use crate::goal::Goal;
 use crate::preset::Preset;
 use crate::scene::{Axis, Numbers, product};
-use crate::wish::Wish;
 use topo_analysis::TimelineSettings;
 
 /// An elastic experiment: which knots, how twisted, how cut, how accurately.
@@ -57,7 +57,7 @@ pub struct ElasticScene {
     pub tighten: TightenSettings,
     /// What was asked for instead of settings.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub wish: Option<Wish>,
+    pub goal: Option<Goal>,
     /// Places of the cuts by [`ElasticCase::state`], instead of `cuts`: those of another run.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fixed_cuts: Option<BTreeMap<String, Vec<f64>>>,
@@ -137,7 +137,7 @@ impl ElasticScene {
             own_knots: None,
             preset,
             tighten: preset.tighten(),
-            wish: None,
+            goal: None,
             fixed_cuts: None,
             own_terms: Vec::new(),
             observables: Vec::new(),

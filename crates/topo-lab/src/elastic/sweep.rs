@@ -8,9 +8,9 @@ use topo_knots::{KnotTable, TightKnot};
 
 use super::battery::Elastic;
 use super::case::ElasticCase;
+use super::case_run::CaseInputs;
 use super::cost::cost_of;
 use super::identity::fingerprint;
-use super::job::CaseJob;
 use super::print;
 use super::run;
 use super::scene::ElasticScene;
@@ -18,10 +18,10 @@ use crate::LabError;
 use crate::battery::{Battery, Stage};
 use crate::cost::{Cost, Estimate};
 use crate::folder::Outcome;
+use crate::goal::{Choice, ErrorRow, errors_of_rods};
 use crate::knots::tight_shapes;
 use crate::progress::{Event, SweepSettings};
 use crate::sweep::{self, Experiment, Place, SweepReport};
-use crate::wish::{ErrorRow, Grant, errors_of_rods};
 use topo_analysis::SweepRow;
 
 /// What an elastic sweep leaves behind.
@@ -155,13 +155,13 @@ impl Experiment for Rods<'_> {
             // interrupted while shapes were made
             None => return Ok(None),
         };
-        let job = CaseJob {
+        let inputs = CaseInputs {
             scene: &self.scene,
             case,
             tight,
             table: &self.table,
         };
-        run::run(&job, place)
+        run::run(&inputs, place)
     }
 
     fn header(&self) -> String {
@@ -172,19 +172,19 @@ impl Experiment for Rods<'_> {
         print::line(row)
     }
 
-    fn pick(&mut self, jobs: usize) -> Result<Option<Grant>, LabError> {
-        let (scene, grant) = self.scene.granted(&self.table, jobs)?;
+    fn choose_settings(&mut self, jobs: usize) -> Result<Option<Choice>, LabError> {
+        let (scene, choice) = self.scene.with_chosen_settings(&self.table, jobs)?;
         *self = self.with(scene);
-        Ok(grant)
+        Ok(choice)
     }
 
-    fn coarser(&self, grant: &Grant, rows: &[SweepRow]) -> Result<Option<Self>, LabError> {
-        let scene = self.scene.check_of(&self.table, grant, rows)?;
+    fn coarser(&self, choice: &Choice, rows: &[SweepRow]) -> Result<Option<Self>, LabError> {
+        let scene = self.scene.check_of(&self.table, choice, rows)?;
         Ok(Some(self.with(scene)))
     }
 
-    fn errors(&self, grant: &Grant, rows: &[SweepRow], coarser: &[SweepRow]) -> Vec<ErrorRow> {
-        errors_of_rods(grant, rows, coarser)
+    fn errors(&self, choice: &Choice, rows: &[SweepRow], coarser: &[SweepRow]) -> Vec<ErrorRow> {
+        errors_of_rods(choice, rows, coarser)
     }
 }
 
@@ -291,17 +291,20 @@ mod tests {
         let scene = ElasticScene::parse(SCENE, Path::new("scene.toml")).unwrap();
         let folder = tempfile::tempdir().unwrap();
         let sweep = |scene: &ElasticScene| {
-            let told = std::sync::Mutex::new(Vec::new());
+            let replaced = std::sync::Mutex::new(Vec::new());
             let report = run_sweep(scene, &table, &settings(folder.path(), 1), &|event| {
                 if let Event::Replaced { names, reason } = event {
-                    told.lock().unwrap().push((reason.to_owned(), names.len()));
+                    replaced
+                        .lock()
+                        .unwrap()
+                        .push((reason.to_owned(), names.len()));
                 }
             })
             .unwrap();
-            (timeless(&report), told.into_inner().unwrap())
+            (timeless(&report), replaced.into_inner().unwrap())
         };
-        let (first, told) = sweep(&scene);
-        assert!(told.is_empty());
+        let (first, replaced) = sweep(&scene);
+        assert!(replaced.is_empty());
         let case = folder.path().join(&scene.folder).join(&first[0].case);
         let mark = case.join("run.json");
         let text = std::fs::read_to_string(&mark).unwrap();
@@ -321,10 +324,10 @@ mod tests {
             (rows_gone.to_string(), "no rows"),
         ] {
             std::fs::write(&mark, left).unwrap();
-            let (rows, told) = sweep(&scene);
+            let (rows, replaced) = sweep(&scene);
             assert_eq!(rows, first);
-            assert!(told.len() == 1 && told[0].1 == 1, "{told:?}");
-            assert!(told[0].0.contains(reason), "{told:?}");
+            assert!(replaced.len() == 1 && replaced[0].1 == 1, "{replaced:?}");
+            assert!(replaced[0].0.contains(reason), "{replaced:?}");
         }
         for (file, left) in [
             ("snapshots.csv", None),
@@ -336,11 +339,11 @@ mod tests {
                 None => std::fs::remove_file(&path).unwrap(),
                 Some(text) => std::fs::write(&path, text).unwrap(),
             }
-            let (rows, told) = sweep(&scene);
+            let (rows, replaced) = sweep(&scene);
             assert_eq!(rows, first);
             assert!(
-                told.len() == 1 && told[0].0.contains("missing or damaged"),
-                "{told:?}"
+                replaced.len() == 1 && replaced[0].0.contains("missing or damaged"),
+                "{replaced:?}"
             );
             assert!(std::fs::read(&path).unwrap() == whole);
         }
@@ -371,11 +374,11 @@ mod tests {
                 let file = file.unwrap();
                 std::fs::copy(file.path(), to.join(file.file_name())).unwrap();
             }
-            let told = SweepSettings {
+            let only_gather = SweepSettings {
                 only_finished: true,
                 ..settings(merged.path(), 1)
             };
-            let so_far = run_sweep(&scene, &table, &told, &|_| {}).unwrap();
+            let so_far = run_sweep(&scene, &table, &only_gather, &|_| {}).unwrap();
             assert_eq!(so_far.n_computed, 0);
             assert_eq!(so_far.rows.len(), if shard == "2/2" { 1 } else { 2 });
         }
@@ -435,11 +438,11 @@ mod tests {
             .unwrap();
             assert!(report.interrupted && report.rows.is_empty());
         };
-        let told = std::sync::Mutex::new(Vec::new());
+        let replaced = std::sync::Mutex::new(Vec::new());
         let finish = || {
             let report = run_sweep(&scene, &table, &settings(torn.path(), 1), &|event| {
                 if let Event::Replaced { reason, .. } = event {
-                    told.lock().unwrap().push(reason.to_owned());
+                    replaced.lock().unwrap().push(reason.to_owned());
                 }
             })
             .unwrap();
@@ -464,7 +467,7 @@ mod tests {
             finish();
         }
         let damaged = "its checkpoint is damaged";
-        assert_eq!(told.into_inner().unwrap(), [damaged, damaged]);
+        assert_eq!(replaced.into_inner().unwrap(), [damaged, damaged]);
     }
 
     #[test]

@@ -123,7 +123,7 @@ impl ElasticScene {
             ..self.clone()
         };
         scene.discharge.until_released = LAST_SHARE;
-        // types are told by the sweep
+        // types are found by the sweep
         scene.timeline.closures = 0;
         Variant {
             name: "followed to 99.999 %".to_owned(),

@@ -81,17 +81,17 @@ fn check_case(
     document: &Document<'_>,
 ) -> Result<(), LabError> {
     let refuse = |e| refused(document, e);
-    let has_wish = scene.wish.is_some();
+    let has_goal = scene.goal.is_some();
     let battery = match NematicBattery::new(&case.nematic, &scene.accuracy) {
-        // the grid of a wish is not known yet
-        Err(_) if has_wish => {
+        // the grid of a goal is not known yet
+        Err(_) if has_goal => {
             case.nematic.clone().checked().map_err(refuse)?;
             return Ok(());
         }
         battery => battery.map_err(refuse)?,
     };
     let needed = battery.memory().total();
-    if !has_wish && scene.accuracy.memory_limit.is_none() && needed > MOST_BYTES {
+    if !has_goal && scene.accuracy.memory_limit.is_none() && needed > MOST_BYTES {
         let grid = battery.grid().cells();
         let key = key_of_grid(document);
         return Err(document.wrong(
@@ -106,7 +106,7 @@ fn check_case(
     }
     if let Some(flow) = &case.flow {
         match flow.check(battery.grid(), case.nematic.particle) {
-            Err(StokesError::Memory { .. }) if has_wish => {}
+            Err(StokesError::Memory { .. }) if has_goal => {}
             checked => checked.map_err(|e| refuse(e.into()))?,
         }
     }
@@ -122,7 +122,7 @@ fn key_of_grid(document: &Document<'_>) -> &'static str {
 
 /// What the nematic refuses, with the key of the scene.
 fn refused(document: &Document<'_>, error: NematicError) -> LabError {
-    let told = error.to_string();
+    let message = error.to_string();
     let (key, value) = match &error {
         NematicError::Value(wrong) | NematicError::Flow(StokesError::Value(wrong)) => {
             let is_flag = document
@@ -169,7 +169,7 @@ fn refused(document: &Document<'_>, error: NematicError) -> LabError {
             };
         }
     };
-    document.wrong(key, value, told)
+    document.wrong(key, value, message)
 }
 
 const NO_PARTICLE: &str = "it changes nothing: there is no particle; leave it out";
@@ -211,7 +211,7 @@ pub(super) fn idle(scene: &NematicScene) -> Vec<(&'static str, &'static str)> {
         "it changes nothing: nematic.cells says how large the cell is; keep one of the two",
     );
     when(
-        scene.wish.is_some() && nematic.cells.is_none(),
+        scene.goal.is_some() && nematic.cells.is_none(),
         &["nematic.spacing"],
         "accuracy and budget pick the spacing: keep one of the two",
     );

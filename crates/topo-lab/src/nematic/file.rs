@@ -34,8 +34,8 @@ use super::check;
 use super::keys::{COLLOID_KEYS, SPACING};
 use super::scene::NematicScene;
 use crate::LabError;
+use crate::goal::{Goal, GoalOr, budget};
 use crate::scene::{BesideQ, Document, axes, folder_of, numbers, put_axes, read_text, remove};
-use crate::wish::{Wish, WishOr, budget};
 
 /// A file, its windings left out: those of the colloid, and those that have flow besides all without.
 #[derive(Debug, Deserialize)]
@@ -51,7 +51,7 @@ struct File {
     discharge: DischargeSettings,
     flow: Option<BesideQ<FlowParameters>>,
     #[serde(default)]
-    accuracy: WishOr<NematicAccuracy>,
+    accuracy: GoalOr<NematicAccuracy>,
     budget: Option<String>,
 }
 
@@ -119,7 +119,7 @@ impl NematicScene {
         let flowing = windings(&document, "flow.q")?;
         let mut file: File = document.read(&plain)?;
         let flow = file.flow.take().map(|BesideQ(flow)| flow);
-        let (accuracy, wish) = std::mem::take(&mut file.accuracy)
+        let (accuracy, goal) = std::mem::take(&mut file.accuracy)
             .with_budget(file.budget.as_deref())
             .map_err(|(key, text, remedy)| document.wrong(key, text, remedy))?;
         let scene = Self {
@@ -133,7 +133,7 @@ impl NematicScene {
             accuracy,
             axes,
             fitted: None,
-            wish,
+            goal,
             nematic: file.case().nematic,
         };
         check::check(&scene, &document)?;
@@ -175,21 +175,21 @@ impl NematicScene {
             }
             put("flow", flow);
         }
-        match self.wish {
-            Some(Wish::Accuracy(error)) => {
+        match self.goal {
+            Some(Goal::Accuracy(error)) => {
                 file.insert("accuracy".to_owned(), toml::Value::Float(error));
             }
             _ => put("accuracy", table_of(&self.accuracy)),
         }
-        if let Some(text) = budget(self.wish) {
+        if let Some(text) = budget(self.goal) {
             file.insert("budget".to_owned(), toml::Value::String(text));
         }
         for (key, _) in check::idle(self) {
             remove(key, &mut file);
         }
-        let has_wish = self.wish.is_some();
+        let has_goal = self.goal.is_some();
         let axes = self.axes.iter();
-        let kept = axes.filter(|axis| !(has_wish && axis.key() == SPACING));
+        let kept = axes.filter(|axis| !(has_goal && axis.key() == SPACING));
         put_axes(kept, &mut file);
         // Tables of numbers and names always have a text.
         toml::to_string(&file).unwrap_or_default()

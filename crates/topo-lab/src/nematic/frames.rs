@@ -8,7 +8,7 @@ use topo_nematic::{
 };
 
 use super::scene::NematicScene;
-use super::snapshot::Kept;
+use super::snapshot::Snapshots;
 use crate::LabError;
 use topo_analysis::{LinePoint, SlicePoint};
 
@@ -42,7 +42,7 @@ pub fn nematic_frames(
         source,
     };
     let mut nematic = scene.nematic.clone();
-    nematic.pattern = SurfacePattern::Charge(q as i32);
+    nematic.pattern = SurfacePattern::Winding(q as i32);
     let mut accuracy = scene.accuracy;
     accuracy.threads = Threads::All;
     let battery = NematicBattery::new(&nematic, &accuracy).map_err(refuse)?;
@@ -72,7 +72,7 @@ fn frame(
     state: &NematicState,
     flow: Option<&FlowCoupling>,
 ) -> NematicFrame {
-    let mut kept = Kept::default();
+    let mut kept = Snapshots::default();
     kept.keep(time, state, flow);
     NematicFrame {
         time,

@@ -27,11 +27,11 @@ impl NematicScene {
         let usual = NematicParameters::default();
         let first = match &nematic.pattern {
             _ if !nematic.particle => "no-particle".to_owned(),
-            SurfacePattern::Charge(q) => format!("q{q:02}"),
+            SurfacePattern::Winding(q) => format!("q{q:02}"),
             other => pattern_name(other).to_owned(),
         };
         let has_more = match &nematic.pattern {
-            SurfacePattern::Charge(_) => !nematic.particle && nematic.pattern != usual.pattern,
+            SurfacePattern::Winding(_) => !nematic.particle && nematic.pattern != usual.pattern,
             SurfacePattern::Homeotropic => !nematic.particle,
             _ => true,
         };
@@ -108,10 +108,10 @@ impl NematicScene {
         }
     }
 
-    /// The scene as [`text`](Self::text) with the settings themselves where a wish picked them; the wish where each case has its own.
+    /// The scene as [`text`](Self::text) with the settings themselves where a goal picked them; the goal where each case has its own.
     pub fn resolved_text(&self) -> String {
         let scene = Self {
-            wish: self.wish.filter(|_| self.fitted.is_some()),
+            goal: self.goal.filter(|_| self.fitted.is_some()),
             ..self.clone()
         };
         scene.text()
@@ -134,7 +134,7 @@ fn usual_settings(precision: topo_nematic::Precision, flow: Option<FlowParameter
 
 fn pattern_name(pattern: &SurfacePattern) -> &'static str {
     match pattern {
-        SurfacePattern::Charge(_) => "charge",
+        SurfacePattern::Winding(_) => "charge",
         SurfacePattern::Homeotropic => "homeotropic",
         SurfacePattern::Planar { .. } => "planar",
         SurfacePattern::Uniform { .. } => "uniform",
@@ -221,7 +221,7 @@ mod tests {
     ];
 
     const PATTERNS: [SurfacePattern; 5] = [
-        SurfacePattern::Charge(-1),
+        SurfacePattern::Winding(-1),
         SurfacePattern::Homeotropic,
         SurfacePattern::Planar {
             axis: [0.0, 0.0, 1.0],

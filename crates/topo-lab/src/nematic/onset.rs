@@ -174,7 +174,7 @@ impl BucklingCase {
             radius: self.radius,
             spacing: self.spacing,
             cell: self.cell,
-            pattern: SurfacePattern::Charge(self.q as i32),
+            pattern: SurfacePattern::Winding(self.q as i32),
             boundary: self.boundary,
             ..NematicParameters::default()
         };
@@ -225,7 +225,7 @@ pub fn buckling_study(
     cases: &[BucklingCase],
     known: &[BucklingRow],
     interrupt: &Interrupt,
-    told: &(dyn Fn(&BucklingRow) + Sync),
+    report: &(dyn Fn(&BucklingRow) + Sync),
 ) -> Result<Vec<BucklingRow>, LabError> {
     let one = |case: &BucklingCase| {
         if let Some(row) = known.iter().find(|row| case.is_of(row)) {
@@ -242,7 +242,7 @@ pub fn buckling_study(
         if interrupt.is_requested() {
             return Ok(None);
         }
-        told(&row);
+        report(&row);
         Ok(Some(row))
     };
     let rows = cases.par_iter().with_max_len(1).map(one);
@@ -289,19 +289,19 @@ mod tests {
             ..case
         };
         let never = Interrupt::new();
-        let told = std::sync::atomic::AtomicUsize::new(0);
+        let report = std::sync::atomic::AtomicUsize::new(0);
         let tell = |_: &BucklingRow| {
-            told.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+            report.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
         };
         let first = buckling_study(&[case], &[], &never, &tell).unwrap();
         assert!(first[0].has_converged() && !first[0].is_buckled());
         assert!((first[0].thickness, first[0].boundary) == (20.0, Boundary::NodeMask));
-        // marked, to be told from a row made anew
+        // marked, to be replaced by a row made anew
         let mut known = first.clone();
         known[0].f_charged = 1.0;
         let both = buckling_study(&[case, finer], &known, &never, &tell).unwrap();
         assert!(both[0] == known[0] && both[1].f_charged > 10.0);
-        assert_eq!(told.into_inner(), 2);
+        assert_eq!(report.into_inner(), 2);
         known[0].results -= 1;
         let old = buckling_study(&[case], &known, &never, &|_| {}).unwrap();
         assert_eq!(old[0].f_charged, first[0].f_charged);

@@ -8,7 +8,7 @@ impl Scene for NematicScene {
     fn change(&mut self, options: &Options<'_>) -> Result<(), LabError> {
         options.no_knots("a colloid has no knot; leave it out")?;
         options.no_cuts("a nematic scene has nothing to cut; leave it out")?;
-        self.wish = options.wish.or(self.wish);
+        self.goal = options.goal.or(self.goal);
         Ok(())
     }
 

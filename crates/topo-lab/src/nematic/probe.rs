@@ -20,7 +20,7 @@ fn charge() -> Option<()> {
     let colloid = NematicParameters {
         radius: 12.0,
         spacing: 1.5,
-        pattern: SurfacePattern::Charge(2),
+        pattern: SurfacePattern::Winding(2),
         ..NematicParameters::default()
     };
     let settings = ChargeSettings {

@@ -17,7 +17,7 @@ use topo_nematic::{
 use super::case::NematicCase;
 use super::field::{self, FieldSnapshot};
 use super::scene::NematicScene;
-use super::snapshot::{Kept, RING_ORDER, centre};
+use super::snapshot::{RING_ORDER, Snapshots, centre};
 use crate::LabError;
 use crate::folder::{Outcome, forget_checkpoints, forget_file, make_folder};
 use crate::sweep::{About, Place, value};
@@ -26,14 +26,14 @@ use crate::sweep::{About, Place, value};
 const KEPT: &str = "nematic-snapshots/4";
 
 /// How a case runs.
-pub(super) struct CaseRun<'a> {
+pub(super) struct ColloidRun<'a> {
     pub scene: &'a NematicScene,
     pub case: &'a NematicCase,
     pub place: &'a Place<'a>,
     pub threads: Threads,
 }
 
-impl CaseRun<'_> {
+impl ColloidRun<'_> {
     /// Runs the case and writes its folder; `None` when interrupted: then its checkpoint stays.
     pub fn run(&self) -> Result<Option<Outcome<NematicRow>>, LabError> {
         self.place.or_anew(|| self.attempt())
@@ -94,7 +94,7 @@ impl CaseRun<'_> {
         charged: &ChargedNematic,
         released: &SwitchedNematic,
         end: &FinalState,
-    ) -> Result<Option<(Discharge, Kept)>, LabError> {
+    ) -> Result<Option<(Discharge, Snapshots)>, LabError> {
         let Place {
             folder,
             settings: sweep,
@@ -148,10 +148,10 @@ impl CaseRun<'_> {
     }
 
     /// What a run before has kept in `place`; where that is nothing, the discharge begins anew.
-    fn kept_before(&self, place: &Path, discharge: &Path) -> Result<Kept, LabError> {
+    fn kept_before(&self, place: &Path, discharge: &Path) -> Result<Snapshots, LabError> {
         let there = place.exists();
-        let kept: Kept = load_checkpoint(place, KEPT).unwrap_or_default();
-        if kept == Kept::default() {
+        let kept: Snapshots = load_checkpoint(place, KEPT).unwrap_or_default();
+        if kept == Snapshots::default() {
             if there {
                 self.place.tell_damaged();
             }
@@ -236,11 +236,11 @@ impl CaseRun<'_> {
         &self,
         charged: &ChargedNematic,
         run: &Discharge,
-        kept: &Kept,
+        kept: &Snapshots,
         outcome: &Outcome<NematicRow>,
     ) -> Result<(), LabError> {
         let row = &outcome.rows[0];
-        let mut all = Kept::default();
+        let mut all = Snapshots::default();
         all.keep(None, charged.state(), None);
         all.lines.extend(kept.lines.iter().cloned());
         all.slices.extend(kept.slices.iter().cloned());

@@ -10,9 +10,9 @@ use topo_nematic::{
 
 use super::case::NematicCase;
 use super::keys::COLLOID_KEYS;
+use crate::goal::Goal;
 use crate::preset::Preset;
 use crate::scene::{Axis, product};
-use crate::wish::Wish;
 
 /// The q that the draft preset shows with flow.
 const DRAFT_FLOW: u32 = 4;
@@ -41,12 +41,12 @@ pub struct NematicScene {
     /// Keys with several values: the cases are their product, the last axis running fastest.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub axes: Vec<Axis>,
-    /// Spacing that a wish asks for: the grid of each case is fitted to it.
+    /// Spacing that a goal asks for: the grid of each case is fitted to it.
     #[serde(skip)]
     pub(super) fitted: Option<f64>,
     /// What was asked for instead of settings.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub wish: Option<Wish>,
+    pub goal: Option<Goal>,
 }
 
 impl NematicScene {
@@ -76,7 +76,7 @@ impl NematicScene {
             accuracy: NematicAccuracy::default(),
             axes: Vec::new(),
             fitted: None,
-            wish: None,
+            goal: None,
         }
     }
 
@@ -114,7 +114,7 @@ impl NematicScene {
             add(self.nematic.pattern.clone());
         }
         for &q in &self.charges {
-            add(SurfacePattern::Charge(q as i32));
+            add(SurfacePattern::Winding(q as i32));
         }
         cases
     }
@@ -128,7 +128,7 @@ impl NematicScene {
 /// Turns of the anchoring: none without a particle, or with a pattern that has none.
 fn winding(nematic: &NematicParameters) -> u32 {
     match nematic.pattern {
-        SurfacePattern::Charge(q) if nematic.particle => q.unsigned_abs(),
+        SurfacePattern::Winding(q) if nematic.particle => q.unsigned_abs(),
         _ => 0,
     }
 }
@@ -178,7 +178,7 @@ mod tests {
     }
 
     #[test]
-    fn grids_of_wishes_keep_the_plates_apart() {
+    fn grids_of_goals_keep_the_plates_apart() {
         for radius in [10.0, 15.0, 17.0] {
             for spacing in [2.0, 1.5, 1.2, 1.0] {
                 let mut nematic = NematicParameters {

@@ -20,7 +20,7 @@ const SLICE_POINTS: usize = 100;
 
 /// Lines and slices kept so far.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub(super) struct Kept {
+pub(super) struct Snapshots {
     /// How many of the shares have been passed.
     n_passed: usize,
     /// At how many times the field was looked at.
@@ -33,7 +33,7 @@ pub(super) struct Kept {
     pub slices: Vec<SlicePoint>,
 }
 
-impl Kept {
+impl Snapshots {
     /// Looks at a state with `share` of the energy left; says whether it was kept.
     pub fn see(
         &mut self,
@@ -195,7 +195,7 @@ mod tests {
         let faces = [Faces::Periodic, Faces::Periodic, Faces::Wall];
         let grid = Grid::new([240, 4, 8], 0.5, faces).unwrap();
         let state = NematicState::from_fn(grid, None, |_| uniaxial(0.5, [0.0, 0.6, 0.8])).unwrap();
-        let mut kept = Kept::default();
+        let mut kept = Snapshots::default();
         assert!(kept.see(1.0, 0.8, &state, None));
         assert!(!kept.see(2.0, 0.78, &state, None));
         assert!(kept.see(3.0, 0.02, &state, None));

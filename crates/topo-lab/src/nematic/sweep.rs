@@ -10,15 +10,15 @@ use super::cost::case_cost;
 use super::field;
 use super::identity::fingerprint;
 use super::print;
-use super::run::CaseRun;
+use super::run::ColloidRun;
 use super::scene::NematicScene;
 use crate::LabError;
 use crate::battery::Battery;
 use crate::cost::{Cost, Estimate};
 use crate::folder::Outcome;
+use crate::goal::{Choice, ErrorRow, errors_of_colloids};
 use crate::progress::{Event, SweepSettings};
 use crate::sweep::{self, Experiment, Place, SweepReport};
-use crate::wish::{ErrorRow, Grant, errors_of_colloids};
 use topo_analysis::NematicRow;
 
 /// What a nematic sweep leaves behind.
@@ -94,7 +94,7 @@ impl Experiment for NematicScene {
         } else {
             Threads::One
         };
-        CaseRun {
+        ColloidRun {
             scene: self,
             case,
             place,
@@ -115,18 +115,23 @@ impl Experiment for NematicScene {
         print::resonances(rows)
     }
 
-    fn pick(&mut self, jobs: usize) -> Result<Option<Grant>, LabError> {
-        let (scene, grant) = self.granted(jobs)?;
+    fn choose_settings(&mut self, jobs: usize) -> Result<Option<Choice>, LabError> {
+        let (scene, choice) = self.with_chosen_settings(jobs)?;
         *self = scene;
-        Ok(grant)
+        Ok(choice)
     }
 
-    fn coarser(&self, grant: &Grant, _rows: &[NematicRow]) -> Result<Option<Self>, LabError> {
-        Ok(Some(self.check_of(grant)))
+    fn coarser(&self, choice: &Choice, _rows: &[NematicRow]) -> Result<Option<Self>, LabError> {
+        Ok(Some(self.check_of(choice)))
     }
 
-    fn errors(&self, grant: &Grant, rows: &[NematicRow], coarser: &[NematicRow]) -> Vec<ErrorRow> {
-        errors_of_colloids(grant, rows, coarser)
+    fn errors(
+        &self,
+        choice: &Choice,
+        rows: &[NematicRow],
+        coarser: &[NematicRow],
+    ) -> Vec<ErrorRow> {
+        errors_of_colloids(choice, rows, coarser)
     }
 }
 
@@ -288,15 +293,18 @@ mod tests {
                 }
             }
             assert_eq!(n_found, 1, "{damaged}");
-            let told = std::sync::Mutex::new(Vec::new());
+            let replaced = std::sync::Mutex::new(Vec::new());
             let mended = run_nematic_sweep(&scene, &settings(torn.path(), 1), &|event| {
                 if let Event::Replaced { reason, .. } = event {
-                    told.lock().unwrap().push(reason.to_owned());
+                    replaced.lock().unwrap().push(reason.to_owned());
                 }
             })
             .unwrap();
             assert_eq!(timeless(&mended), timeless(&calm));
-            assert_eq!(told.into_inner().unwrap(), ["its checkpoint is damaged"]);
+            assert_eq!(
+                replaced.into_inner().unwrap(),
+                ["its checkpoint is damaged"]
+            );
             std::fs::remove_dir_all(torn.path().join(&scene.folder)).unwrap();
         }
     }
@@ -315,12 +323,12 @@ mod tests {
             assert_eq!(estimate_nematic_sweep(&scene, &part).unwrap().n_cases, 1);
             let report = run_nematic_sweep(&scene, &part, &|_| {}).unwrap();
             assert!(report.n_computed == 1 && !report.interrupted);
-            // What is there can be told without computing the rest.
-            let told = SweepSettings {
+            // What is there can be gathered without computing the rest.
+            let only_gather = SweepSettings {
                 only_finished: true,
                 ..settings(merged.path(), 1)
             };
-            let so_far = run_nematic_sweep(&scene, &told, &|_| {}).unwrap();
+            let so_far = run_nematic_sweep(&scene, &only_gather, &|_| {}).unwrap();
             assert!(so_far.n_computed == 0 && so_far.rows.len() == report.rows.len());
             assert!(report.wall_seconds > 0.0 && report.estimate.cpu_seconds > 0.0);
         }

@@ -192,11 +192,11 @@ mod tests {
         assert_eq!(elements, ["1", "2.5"]);
         assert_eq!(document.written("nematic.anchoring.weak"), "[1, 2.5]");
         assert!(!document.has("nematic.anchoring.strong"));
-        let told = document
+        let message = document
             .wrong("nematic.radius", -1, "be positive")
             .to_string();
         assert_eq!(
-            told,
+            message,
             "s.toml, line 3: nematic.radius = -1 is not possible: be positive"
         );
     }

@@ -69,8 +69,8 @@ mod tests {
             "Knots.toml",
             "x/cost.toml",
         ] {
-            let told = folder_of(Path::new(path)).unwrap_err().to_string();
-            assert!(told.contains("rename the file"), "{path}: {told}");
+            let message = folder_of(Path::new(path)).unwrap_err().to_string();
+            assert!(message.contains("rename the file"), "{path}: {message}");
         }
         assert!(folder_of(Path::new(&format!("{}.toml", "a".repeat(101)))).is_err());
     }

@@ -83,7 +83,7 @@ impl Case {
             radius: self.radius,
             spacing: self.spacing,
             cell: [self.edge, self.edge, 0.75 * self.edge],
-            pattern: SurfacePattern::Charge(self.q),
+            pattern: SurfacePattern::Winding(self.q),
             anchoring: self.anchoring,
             material: self.material,
             ..NematicParameters::default()
@@ -184,7 +184,7 @@ impl Case {
         let pattern = if turn.is_multiple_of(2) {
             SurfacePattern::Homeotropic
         } else {
-            SurfacePattern::Charge(self.q)
+            SurfacePattern::Winding(self.q)
         };
         let settings = SwitchSettings {
             to: SwitchTarget::Pattern {
@@ -371,7 +371,7 @@ fn ramps() -> Vec<Placed> {
     for (name, to) in [
         ("free", SwitchTarget::default()),
         ("homeotropic", pattern(SurfacePattern::Homeotropic)),
-        ("q = 5", pattern(SurfacePattern::Charge(5))),
+        ("q = 5", pattern(SurfacePattern::Winding(5))),
     ] {
         for ramp in [0.1, 1.0, 10.0, 100.0] {
             let case = Case {

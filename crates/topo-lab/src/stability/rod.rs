@@ -235,7 +235,7 @@ pub(super) fn cells(preset: Preset) -> Vec<Cell> {
 fn closed(point: impl Fn(f64) -> [f64; 3]) -> Polyline {
     let n = 400;
     let at = |k: usize| Vector3::from(point(std::f64::consts::TAU * k as f64 / n as f64));
-    // A smooth curve without double points is a polygon that can be had.
+    // A smooth curve without double points makes a sound polygon.
     Polyline::new((0..n).map(at).collect(), true).unwrap_or_else(|e| panic!("{e}"))
 }
 

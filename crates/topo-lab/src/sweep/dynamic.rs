@@ -9,8 +9,8 @@ use super::{SweepReport, estimate, run};
 use crate::LabError;
 use crate::battery::{Checked, Stage, Sweep, Swept};
 use crate::cost::Estimate;
+use crate::goal::Choice;
 use crate::progress::{Event, SweepSettings};
-use crate::wish::Grant;
 
 impl<E: Experiment> Sweep for E {
     fn label(&self) -> &'static str {
@@ -21,8 +21,8 @@ impl<E: Experiment> Sweep for E {
         out.join(self.folder())
     }
 
-    fn grant(&mut self, jobs: usize) -> Result<Option<Grant>, LabError> {
-        self.pick(jobs)
+    fn choose(&mut self, jobs: usize) -> Result<Option<Choice>, LabError> {
+        self.choose_settings(jobs)
     }
 
     fn stages(&self, settings: &SweepSettings) -> Result<Vec<Stage>, LabError> {
@@ -99,17 +99,17 @@ impl<E: Experiment> Swept for Finished<'_, E> {
 
     fn check(
         &self,
-        grant: &Grant,
+        choice: &Choice,
         settings: &SweepSettings,
         progress: &(dyn Fn(Event<'_>) + Sync),
     ) -> Result<Option<Checked>, LabError> {
         let rows = &self.report.rows;
-        let Some(coarser) = self.experiment.coarser(grant, rows)? else {
+        let Some(coarser) = self.experiment.coarser(choice, rows)? else {
             return Ok(None);
         };
         let report = run(&coarser, settings, progress)?;
         Ok(Some(Checked {
-            errors: self.experiment.errors(grant, rows, &report.rows),
+            errors: self.experiment.errors(choice, rows, &report.rows),
             failed: report.failed,
             folder: coarser.results(&settings.out),
             is_interrupted: report.interrupted,

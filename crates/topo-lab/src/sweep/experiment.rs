@@ -8,8 +8,8 @@ use crate::battery::{Battery, Stage};
 use crate::cost::Cost;
 use crate::error::LabError;
 use crate::folder::Outcome;
+use crate::goal::{Choice, ErrorRow};
 use crate::progress::{Event, SweepSettings};
-use crate::wish::{ErrorRow, Grant};
 
 /// What a battery says so that its scenes can be swept, and their tables printed.
 ///
@@ -77,7 +77,7 @@ pub trait Experiment: Sync {
     /// What the cases to be computed start from.
     ///
     /// # Errors
-    /// What cannot be had; no case is run then.
+    /// What is not possible; no case is run then.
     fn prepare(
         &self,
         todo: &[&Self::Case],
@@ -111,20 +111,20 @@ pub trait Experiment: Sync {
         Vec::new()
     }
 
-    /// Picks the settings that grant the wish of the scene; a battery without measured settings has no wishes.
+    /// Picks the settings that meets the goal of the scene; a battery without measured settings has no goals.
     ///
     /// # Errors
-    /// A wish that no measured setting grants, with what can be had.
-    fn pick(&mut self, _jobs: usize) -> Result<Option<Grant>, LabError> {
+    /// A goal that no measured setting meets, with what is possible.
+    fn choose_settings(&mut self, _jobs: usize) -> Result<Option<Choice>, LabError> {
         Ok(None)
     }
 
     /// The coarser experiment whose difference to the runs `rows` of this one tells their error; nothing where there are no
-    /// wishes.
+    /// goals.
     ///
     /// # Errors
     /// A scene that makes no sense.
-    fn coarser(&self, _grant: &Grant, _rows: &[Self::Row]) -> Result<Option<Self>, LabError>
+    fn coarser(&self, _grant: &Choice, _rows: &[Self::Row]) -> Result<Option<Self>, LabError>
     where
         Self: Sized,
     {
@@ -132,7 +132,12 @@ pub trait Experiment: Sync {
     }
 
     /// Errors of the runs `rows`, beside those of the [coarser](Self::coarser) experiment.
-    fn errors(&self, _grant: &Grant, _rows: &[Self::Row], _coarser: &[Self::Row]) -> Vec<ErrorRow> {
+    fn errors(
+        &self,
+        _grant: &Choice,
+        _rows: &[Self::Row],
+        _coarser: &[Self::Row],
+    ) -> Vec<ErrorRow> {
         Vec::new()
     }
 }

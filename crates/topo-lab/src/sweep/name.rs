@@ -224,7 +224,7 @@ mod tests {
             name(0.0, &settings(20.0 * third)),
             name(0.0, &settings(20.0 * near))
         );
-        // what is no part of a folder's name is replaced, and told apart all the same
+        // what is no part of a folder's name is replaced, and kept distinct all the same
         let odd = |knot: &str| CaseName::of(knot).finish(|| json!(knot));
         assert_ne!(odd("a/b"), odd("a-b"));
         assert!(!odd("../a b").contains(['/', ' ']));

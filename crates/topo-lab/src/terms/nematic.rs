@@ -24,7 +24,7 @@ fn plain(radius: f64) -> Colloid {
         parameters: NematicParameters {
             radius,
             spacing: 1.5,
-            pattern: SurfacePattern::Charge(3),
+            pattern: SurfacePattern::Winding(3),
             ..NematicParameters::default()
         },
         accuracy: NematicAccuracy::default(),

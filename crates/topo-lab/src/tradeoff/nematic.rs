@@ -9,8 +9,8 @@ use topo_nematic::{
 
 use super::sets::{CaseSet, Colloid, colloids};
 use super::trial::{Outcome, Quantities, REFERENCE, TradeoffRun, Trial};
+use crate::goal::extrapolated;
 use crate::nematic::fit;
-use crate::wish::extrapolated;
 use topo_analysis::{DischargeTimes, NEMATIC_SHARES};
 
 /// Radius of the particle, and edges of the cell: multiples of every spacing, so that the cell is the same on all grids.
@@ -23,7 +23,7 @@ const TOLERANCES: [f64; 3] = [1e-3, 1e-4, 3e-5];
 /// The reference of these.
 const REFERENCE_SPACING: f64 = 0.75;
 const REFERENCE_TOLERANCE: f64 = 1e-5;
-/// Rings that buckle at this radius, where late times hang on how far: told apart from the rest.
+/// Rings that buckle at this radius, where late times hang on how far: kept apart from the rest.
 const BUCKLED: [i32; 1] = [11];
 /// Charges followed with flow.
 const FLOWING: [i32; 1] = [5];
@@ -70,7 +70,7 @@ impl Run {
         let mut parameters = NematicParameters {
             radius: self.colloid.radius,
             cell: self.colloid.cell,
-            pattern: SurfacePattern::Charge(self.colloid.q),
+            pattern: SurfacePattern::Winding(self.colloid.q),
             boundary: self.boundary,
             ..NematicParameters::default()
         };
@@ -279,7 +279,7 @@ fn trial((case, setting, value, run): Named) -> Trial {
     }
 }
 
-/// What wishes choose from, from coarse to fine; each has a coarser one beside it, so that the first is none of them.
+/// What goals choose from, from coarse to fine; each has a coarser one beside it, so that the first is none of them.
 pub(super) const LADDER: [(f64, f64); 6] = [
     (2.0, 1e-4),
     (1.5, 1e-4),

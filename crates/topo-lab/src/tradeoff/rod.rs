@@ -10,7 +10,7 @@ use super::sets::{CaseSet, rods};
 use super::trial::{Outcome, TradeoffWork, Trial};
 use crate::LabError;
 use crate::elastic::{
-    CaseJob, ElasticScene, MeasuredDischarge, exact_discharge, measured_discharge,
+    CaseInputs, ElasticScene, MeasuredDischarge, exact_discharge, measured_discharge,
 };
 use crate::knots::{Shapes, tight_shapes};
 use crate::preset::Preset;
@@ -31,7 +31,7 @@ const DRAFT_CASES: [(&str, f64); 9] = [
 /// Edges and tolerances of the numerical settings.
 const EDGES: [usize; 4] = [64, 100, 140, 200];
 const TOLERANCES: [f64; 5] = [1e-2, 4e-3, 2e-3, 1e-3, 5e-4];
-/// What wishes choose from, from coarse to fine; each has a coarser one beside it, so that the first is none of them.
+/// What goals choose from, from coarse to fine; each has a coarser one beside it, so that the first is none of them.
 ///
 /// The error is that of the edges: tolerances are as loose as leaves it so.
 pub(super) const LADDER: [(usize, f64); 6] = [
@@ -277,7 +277,7 @@ fn discharge(
     interrupt: &Interrupt,
 ) -> Option<MeasuredDischarge> {
     let of = scene.case(&case.knot, Some(case.twist));
-    let job = CaseJob {
+    let job = CaseInputs {
         scene,
         case: &of,
         tight: shapes.get(&case.knot)?,

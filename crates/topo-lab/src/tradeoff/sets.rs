@@ -1,4 +1,4 @@
-//! Three disjoint sets of cases: on one the settings of wishes are measured, on one their estimates are scaled, on one both
+//! Three disjoint sets of cases: on one the settings of goals are measured, on one their estimates are scaled, on one both
 //! are checked.
 
 use topo_knots::KnotTable;
@@ -14,7 +14,7 @@ pub enum CaseSet {
     Table,
     /// The factor between differences and estimates.
     Factor,
-    /// How well wishes and estimates hold: nothing is set on it.
+    /// How well goals and estimates hold: nothing is set on it.
     Check,
 }
 

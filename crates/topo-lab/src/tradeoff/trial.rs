@@ -112,7 +112,7 @@ pub struct TradeoffWork<'a> {
     /// How bytes are measured.
     pub peak_bytes: PeakBytes<'a>,
     /// Told the number of runs to come, then the name of each that is finished with its rows.
-    pub told: &'a (dyn Fn(TradeoffEvent<'_>) + Sync),
+    pub report: &'a (dyn Fn(TradeoffEvent<'_>) + Sync),
 }
 
 /// What a trade-off tells.

@@ -29,7 +29,7 @@ const RESIDUAL: [f64; 2] = [0.05, 0.2];
 impl Accuracy {
     /// Whether it is reached with this residual and distance to the next eigenvalue.
     ///
-    /// The error is at most the residual's square over the distance; a pair that is not told apart yet looks like one eigenvalue,
+    /// The error is at most the residual's square over the distance; a pair that is not resolved yet looks like one eigenvalue,
     /// wrong by its distance, which the residual shows.
     fn is_reached(self, eigenvalue: f64, residual: f64, gap: f64) -> bool {
         if self.any_saddle && eigenvalue < -3.0 * self.near_zero {

@@ -53,7 +53,7 @@ pub(crate) fn kernel_with<T: Real>(
         }
     }
     let particle = Particle::central(&grid, 2.9);
-    let pattern = SurfacePattern::Charge(3);
+    let pattern = SurfacePattern::Winding(3);
     let domain = match ball {
         Ball::None => Domain::new(grid, walls, |_| crate::domain::Kind::Regular),
         Ball::Cut(boundary) => {

@@ -53,7 +53,7 @@ pub struct NoSlip {
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(crate) struct NoSlipMemory {
     forces: Vec<f64>,
-    history: history::Kept,
+    history: history::SavedHistory,
     n_iterations: u64,
 }
 

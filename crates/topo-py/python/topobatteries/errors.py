@@ -7,7 +7,7 @@ from typing import Iterable
 
 
 class TopoError(ValueError):
-    """Something that cannot be had as asked.
+    """Something that cannot be made as asked.
 
     Attributes:
         file: the file, where there is one.

@@ -58,7 +58,7 @@ impl WorkAccount {
 }
 
 impl RodModel {
-    /// Starts the account at `state` (a model is told once where its run starts).
+    /// Starts the account at `state` (a model learns once where its run starts).
     ///
     /// # Errors
     /// A rod that folds back on itself has no energy.

@@ -8,7 +8,7 @@ use topo_core::{Ledger, MOST_COUNTED, Model};
 use topo_sparse::SparseError;
 
 use super::RodModel;
-use super::expected::Expected;
+use super::approaching::ApproachingPairs;
 use super::parts::{Accepted, Frozen};
 use crate::RodState;
 use crate::contact::PairsMemory;
@@ -22,7 +22,7 @@ pub(crate) struct ModelMemory {
     /// Whether energies and forces at the state are computed.
     is_evaluated: bool,
     pairs: PairsMemory,
-    expected: Expected,
+    expected: ApproachingPairs,
     mobility: MobilityMemory,
     n_twist_factorisations: Option<u64>,
     newton: NewtonMemory,
@@ -229,7 +229,7 @@ impl ModelMemory {
     pub(crate) fn spoil(&mut self, part: usize) -> bool {
         match PARTS[part] {
             "pairs" => self.pairs.spoil(),
-            "expected" => self.expected = Expected::new(1.0),
+            "expected" => self.expected = ApproachingPairs::new(1.0),
             "newton" => self.newton.factor = None,
             "newton_twist" => self.newton_twist = None,
             "accepted" => self.accepted.rate.truncate(7),

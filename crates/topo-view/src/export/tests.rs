@@ -71,7 +71,7 @@ fn colloid(out: &Path, scene: &str, keep_fields: bool) -> PathBuf {
 }
 
 /// What a program in Python says of arguments, as the JSON on its last line.
-fn told(program: &str, arguments: &[&Path]) -> Value {
+fn report(program: &str, arguments: &[&Path]) -> Value {
     let needs = Outside::Python.needs();
     let python = Outside::Python.find().expect(needs);
     let mut command = Command::new(python);
@@ -95,7 +95,7 @@ fn python_reads_exported_cases_by_pyvista_and_numpy() {
     let made = write(&ball, &b, &ALL).unwrap();
     assert!(made.files.iter().all(|f| f.exists()) && made.notes.is_empty());
     let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/output.md");
-    let told = told(include_str!("read_back.py"), &[&a, &b, &page]);
+    let report = report(include_str!("read_back.py"), &[&a, &b, &page]);
     for key in [
         "npz_same",
         "field_npz_same",
@@ -103,22 +103,22 @@ fn python_reads_exported_cases_by_pyvista_and_numpy() {
         "plane_same",
         "shown_array",
     ] {
-        assert_eq!(told[key], true, "{key}: {told}");
+        assert_eq!(report[key], true, "{key}: {report}");
     }
-    check_fibre(&told);
-    check_colloid(&told);
+    check_fibre(&report);
+    check_colloid(&report);
 }
 
-fn number(told: &Value, key: &str) -> f64 {
-    let found = told[key].as_f64();
-    found.unwrap_or_else(|| panic!("{key}: {told}"))
+fn number(report: &Value, key: &str) -> f64 {
+    let found = report[key].as_f64();
+    found.unwrap_or_else(|| panic!("{key}: {report}"))
 }
 
-fn check_fibre(told: &Value) {
-    let number = |key: &str| number(told, key);
-    assert_eq!(told["fibre_points"], 60);
+fn check_fibre(report: &Value) {
+    let number = |key: &str| number(report, key);
+    assert_eq!(report["fibre_points"], 60);
     assert_eq!(
-        told["fibre_arrays"],
+        report["fibre_arrays"],
         serde_json::json!([
             "curvature",
             "energy_density",
@@ -129,7 +129,7 @@ fn check_fibre(told: &Value) {
         ])
     );
     // a knot's fibre turns by more than two turns in all, and is about as long as it was
-    assert!((number("fibre_length") - 25.0).abs() < 2.5, "{told}");
+    assert!((number("fibre_length") - 25.0).abs() < 2.5, "{report}");
     assert!(number("fibre_curvature") * 25.0 > 2.0 * std::f64::consts::TAU);
     // a tight trefoil of length 25 h is as thick as its ropelength (ashton2011) says, and strands drawn so touch
     let diameter = number("contact_diameter");
@@ -137,9 +137,9 @@ fn check_fibre(told: &Value) {
     assert!((number("tube_radius") - 0.5 * diameter).abs() < 1e-12);
     assert!((number("shown_radius") - 0.5 * diameter).abs() < 1e-5);
     let strands = number("strand_distance") / diameter;
-    assert!((0.9..1.2).contains(&strands), "{strands} {told}");
+    assert!((0.9..1.2).contains(&strands), "{strands} {report}");
     assert_eq!(number("last_points"), 61.0);
-    let times = told["fibre_times"].as_array().unwrap();
+    let times = report["fibre_times"].as_array().unwrap();
     assert!(
         times.len() > 2
             && times
@@ -148,21 +148,24 @@ fn check_fibre(told: &Value) {
     );
 }
 
-fn check_colloid(told: &Value) {
-    let number = |key: &str| number(told, key);
+fn check_colloid(report: &Value) {
+    let number = |key: &str| number(report, key);
     assert_eq!(
-        told["field_arrays"],
+        report["field_arrays"],
         serde_json::json!(["Q", "director", "fluid", "order"])
     );
     assert!(number("traceless") < 1e-6 && number("eigen") < 1e-6 && number("unit") < 1e-6);
-    assert!((number("bulk_order") - 0.53).abs() < 0.05, "{told}");
-    assert!(number("speed") > 1e-6, "{told}");
+    assert!((number("bulk_order") - 0.53).abs() < 0.05, "{report}");
+    assert!(number("speed") > 1e-6, "{report}");
     assert!(number("field_times") >= 4.0);
-    assert_eq!(told["nemaktis_components"], serde_json::json!([3, 6]));
-    assert!((number("nemaktis_order") - 1.0).abs() < 0.05, "{told}");
+    assert_eq!(report["nemaktis_components"], serde_json::json!([3, 6]));
+    assert!((number("nemaktis_order") - 1.0).abs() < 0.05, "{report}");
     assert!((number("nemaktis_spacing") - 0.01).abs() < 1e-6);
     let area = 4.0 * std::f64::consts::PI * 25.0;
-    assert!((number("sphere_area") / area - 1.0).abs() < 0.01, "{told}");
+    assert!(
+        (number("sphere_area") / area - 1.0).abs() < 0.01,
+        "{report}"
+    );
     assert!(number("sphere_unit") < 1e-12);
     assert!(number("line_times") >= 4.0 && number("last_lines") == 0.0);
 }

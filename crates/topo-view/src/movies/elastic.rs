@@ -65,13 +65,13 @@ fn clip(stage: &Stage<'_>) -> Result<Clip, ViewError> {
     };
     let frames = stage.frames(|k, canvas| {
         let now = time(k);
-        let told = now.map_or("charged, closed".to_owned(), |t| {
+        let label = now.map_or("charged, closed".to_owned(), |t| {
             format!("*t* = {} *T*_{{0}}", text::number(t, 3))
         });
         canvas.text(
             480.0,
             26.0,
-            &told,
+            &label,
             Style::default().middle().bold().size(20.0),
         );
         for (q, actor) in actors.iter().enumerate() {

@@ -140,11 +140,11 @@ impl Play {
     ) -> Result<(), ViewError> {
         let now = self.at(time);
         let shot = &self.shots[now];
-        let told = time.map_or("charged".to_owned(), |t| {
+        let label = time.map_or("charged".to_owned(), |t| {
             format!("*t* = {} *R*^{{2}}/Γ*L*", text::significant(t, 2))
         });
         let bold = Style::default().bold();
-        canvas.text(480.0, 34.0, &told, bold.middle().size(22.0));
+        canvas.text(480.0, 34.0, &label, bold.middle().size(22.0));
         let label = format!("*q* = {Q}, *R* = {} ξ_{{N}}", self.radius);
         canvas.text(20.0, 34.0, &label, bold.size(18.0));
 
@@ -167,7 +167,7 @@ impl Play {
             center: [720.0, 295.0],
         };
         slice::draw(canvas, &shot.plane, &lines, &look)?;
-        let told = if shot.speed > 0.0 {
+        let label = if shot.speed > 0.0 {
             format!(
                 "largest |*u*| {} ξ_{{N}}/τ_{{N}}, |ω| {} /τ_{{N}}",
                 text::significant(shot.speed, 2),
@@ -177,7 +177,7 @@ impl Play {
             "at rest".to_owned()
         };
         let style = Style::default().middle().size(14.0).color(INK);
-        canvas.text(720.0, 548.0, &told, style);
+        canvas.text(720.0, 548.0, &label, style);
         self.energy(canvas, now, time, last);
         Ok(())
     }

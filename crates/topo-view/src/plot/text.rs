@@ -158,9 +158,9 @@ mod tests {
 
     #[test]
     fn significant_digits_are_kept() {
-        let told = |v| significant(v, 2);
+        let label = |v| significant(v, 2);
         assert_eq!(
-            [0.0, 0.00123, 12.34, -0.5, 2.3e-6, 4e7].map(told),
+            [0.0, 0.00123, 12.34, -0.5, 2.3e-6, 4e7].map(label),
             ["0", "0.0012", "12", "−0.5", "2.3·10⁻⁶", "4·10⁷"]
         );
     }

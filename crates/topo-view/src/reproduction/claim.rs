@@ -86,7 +86,7 @@ pub(crate) struct Claim {
     pub(crate) rule: &'static str,
     /// What the tables say; `None` where they lack what is needed.
     pub(crate) look: fn(&Tables) -> Said,
-    /// The same claim under another reading of the experiment; it is told, the outcome is that of `look`.
+    /// The same claim under another reading of the experiment; it is reported, the outcome is that of `look`.
     pub(crate) other: Option<Other>,
     /// What speaks against the runs that the claim rests on; it is then confirmed in part at most.
     pub(crate) doubt: fn(&Tables) -> Option<String>,

@@ -11,7 +11,7 @@ use super::claim::Claim;
 const SIZE: &str = "the size of the particle and the thickness of the cell";
 const SCHEME: &str = "the scheme at the particle’s surface, the thickness of the cell";
 
-/// Runs with warnings are left out of all of them, and what was left out is told.
+/// Runs with warnings are left out of all of them, and what was left out is said.
 pub const CLAIMS: [Claim; 13] = [
     Claim {
         text: "Below a critical charge the defect ring is flat and lies on the equator.",

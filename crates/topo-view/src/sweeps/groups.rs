@@ -1,4 +1,4 @@
-//! Rows that make one line, and how lines are told apart: by colours and dashes in a legend, or by a colour bar where there are many.
+//! Rows that make one line, and how lines are distinguished: by colours and dashes in a legend, or by a colour bar where there are many.
 
 use super::cases::{Cases, Row, Swept};
 use crate::figures::series::{bounds, step, ticks};
@@ -68,7 +68,7 @@ pub struct Groups<'a> {
     pub groups: Vec<Group<'a>>,
     /// Which is which.
     pub key: Key,
-    /// What is not shown, or not told apart.
+    /// What is not shown, or not distinguished.
     pub note: Option<String>,
 }
 

@@ -313,7 +313,7 @@ fn power_of(low: f64, high: f64) -> f64 {
     10.0_f64.powf(most.log10().floor())
 }
 
-/// Points of a curve that can be told apart on the page.
+/// Points of a curve that can be distinguished on the page.
 fn thinned(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let mut kept: Vec<[f64; 2]> = Vec::new();
     for (k, p) in points.iter().enumerate() {

@@ -12,7 +12,7 @@ const PROBE: &str = r#"<script>
 window.problems = [];
 window.addEventListener('error', (e) => window.problems.push(e.message));
 window.addEventListener('load', () => {
-  const told = {};
+  const report = {};
   const inked = (c) => {
     const flat = document.createElement('canvas');
     flat.width = c.width; flat.height = c.height;
@@ -38,10 +38,10 @@ window.addEventListener('load', () => {
       const s = box.querySelector('select');
       s.value = 0; s.dispatchEvent(new Event('change'));
     }
-    told[name] = { ready: box.dataset.ready, pixels: before[0][0], moved: before[0][1] !== after[0][1] && before[1] !== after[1], chosen: state !== box.dataset.state, wide: document.documentElement.scrollWidth <= window.innerWidth };
+    report[name] = { ready: box.dataset.ready, pixels: before[0][0], moved: before[0][1] !== after[0][1] && before[1] !== after[1], chosen: state !== box.dataset.state, wide: document.documentElement.scrollWidth <= window.innerWidth };
   }
-  told.problems = window.problems;
-  document.title = 'TOLD' + JSON.stringify(told);
+  report.problems = window.problems;
+  document.title = 'REPORT' + JSON.stringify(report);
 });
 </script>"#;
 
@@ -102,24 +102,24 @@ fn browser_the_viewer_turns_slides_and_chooses() {
             .output()
             .unwrap();
         let dom = String::from_utf8_lossy(&output.stdout).into_owned();
-        let told = dom
-            .split_once("<title>TOLD")
+        let report = dom
+            .split_once("<title>REPORT")
             .and_then(|t| t.1.split_once("</title>"))
             .unwrap_or_else(|| panic!("{}", String::from_utf8_lossy(&output.stderr)))
             .0
             .replace("&quot;", "\"");
-        let told: serde_json::Value = serde_json::from_str(&told).unwrap();
-        assert_eq!(told["problems"], serde_json::json!([]), "{told}");
+        let report: serde_json::Value = serde_json::from_str(&report).unwrap();
+        assert_eq!(report["problems"], serde_json::json!([]), "{report}");
         for battery in ["elastic", "nematic"] {
-            let t = &told[battery];
+            let t = &report[battery];
             assert!(
                 t["ready"] == "yes"
                     && t["moved"] == true
                     && t["chosen"] == true
                     && t["wide"] == true,
-                "{size}: {told}"
+                "{size}: {report}"
             );
-            assert!(t["pixels"].as_u64().unwrap() > 5000, "{told}");
+            assert!(t["pixels"].as_u64().unwrap() > 5000, "{report}");
         }
     }
 }

@@ -1,4 +1,4 @@
-//! The tables that scenes by wish take their settings from: recorded, given their factor, checked.
+//! The tables that scenes with a goal take their settings from: recorded, given their factor, checked.
 
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
@@ -77,7 +77,7 @@ pub fn record_table(system: System, rows: &[TradeoffRow]) -> Result<(), CliError
     record_part(PAGE, &format!("{} settings", system.name()), &text)
 }
 
-/// Runs the settings of wishes on the cases of a set: the factor from one, how it holds from the other.
+/// Runs the settings of goals on the cases of a set: the factor from one, how it holds from the other.
 pub fn measure_set(args: &TradeoffArgs, name: &str, folder: &Path) -> Result<(), CliError> {
     let stop = topo_cli::install();
     let set = if name == CaseSet::Factor.name() {
@@ -117,7 +117,7 @@ fn read_record(table: Measured) -> Result<Record, CliError> {
         .map_err(|e| CliError::Input(format!("{}: {e}", json.display())))
 }
 
-/// The factor between differences and estimates, told and recorded if asked for.
+/// The factor between differences and estimates, reported and recorded if asked for.
 fn find_factor(table: Measured, rows: &[TradeoffRow], is_recorded: bool) -> Result<(), CliError> {
     let system = table.system();
     let points: Vec<Point> = read_table(&place(table, "csv"))?;
@@ -155,7 +155,7 @@ fn check_table(table: Measured, rows: &[TradeoffRow]) -> Result<Vec<CheckRow>, C
     Ok(check_estimates(table.system(), &points, factor.scale, rows))
 }
 
-/// The table and the report of a check, told and recorded if asked for.
+/// The table and the report of a check, reported and recorded if asked for.
 fn write_check(checked: &[CheckRow], folder: &Path, is_recorded: bool) -> Result<(), CliError> {
     write_table(&folder.join("check.csv"), checked)?;
     let report = topo_view::tradeoff::check_report(checked);

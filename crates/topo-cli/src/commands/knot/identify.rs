@@ -53,7 +53,7 @@ fn look(args: &IdentifyArgs, table: &KnotTable) -> Result<(Report, String), CliE
     }
     if several {
         let link = format!(
-            "a link of {} components; how they are linked is not told, each is named by itself",
+            "a link of {} components; how they are linked is not found, each is named by itself",
             file.components.len()
         );
         // Writing to a string cannot fail.
@@ -152,7 +152,7 @@ fn name(
     let finding = Finding::closed(&kind);
     let compared = if kind.is_certain() {
         let hand = if kind.handedness == Handedness::Undecided {
-            ", its hand is not told"
+            ", its hand is unknown"
         } else {
             ""
         };

@@ -9,11 +9,11 @@ pub(super) struct Row {
     line: String,
     excess: Option<f64>,
     /// Said on the terminal.
-    pub told: String,
+    pub sentence: String,
 }
 
 impl Row {
-    pub(super) fn new(entry: &KnotEntry, tight: &TightKnot, told: String) -> Self {
+    pub(super) fn new(entry: &KnotEntry, tight: &TightKnot, sentence: String) -> Self {
         let length = tight.length_over_radius;
         let excess = excess(entry, tight);
         let certificate = &tight.certificate;
@@ -36,7 +36,11 @@ impl Row {
             certificate.residual,
             tight.cpu_seconds
         );
-        Self { line, excess, told }
+        Self {
+            line,
+            excess,
+            sentence,
+        }
     }
 }
 

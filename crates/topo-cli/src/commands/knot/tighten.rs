@@ -45,7 +45,7 @@ pub(super) fn run(args: &TightenArgs, knots: &KnotTable) -> Result<(), CliError>
             return Ok(None);
         }
         let row = Row::new(entry, &tight, write(entry, &tight, args, folder, &stop)?);
-        say!("{}", row.told);
+        say!("{}", row.sentence);
         Ok(Some(row))
     };
     let made: Vec<_> = entries.par_iter().with_max_len(1).map(one).collect();

@@ -209,12 +209,12 @@ fn a_scene_names_its_folder_and_its_knots() {
 fn assert_refused(scenes: &[(&str, [&str; 2])]) {
     for (more, words) in scenes {
         let text = format!("{KNOT}{more}\n");
-        let told = parse(&text).expect_err(more).to_string();
-        assert!(told.contains("scene.toml"), "{more:?} gives {told:?}");
+        let message = parse(&text).expect_err(more).to_string();
+        assert!(message.contains("scene.toml"), "{more:?} gives {message:?}");
         for word in words {
             assert!(
-                told.contains(word),
-                "{more:?} gives {told:?} without {word:?}"
+                message.contains(word),
+                "{more:?} gives {message:?} without {word:?}"
             );
         }
     }
@@ -422,52 +422,52 @@ fn knots_named_twice_are_refused() {
             ["line 2: rod.knot = 3_1#3_1", "is there already"],
         ),
     ] {
-        let told = parse(&format!("[rod]\nknot = {knots}"))
+        let message = parse(&format!("[rod]\nknot = {knots}"))
             .expect_err(knots)
             .to_string();
         for word in words {
-            assert!(told.contains(word), "{knots} gives {told:?}");
+            assert!(message.contains(word), "{knots} gives {message:?}");
         }
         // a table of one's own is looked at when the cases are made
         let own = parse(&format!("knots = \"own\"\n[rod]\nknot = {knots}"));
         if let Ok(scene) = own {
-            let told = scene.cases(&KnotTable::builtin()).unwrap_err().to_string();
+            let message = scene.cases(&KnotTable::builtin()).unwrap_err().to_string();
             assert!(
-                told.contains("scene: rod.knot = ") && told.contains(words[1]),
-                "{told}"
+                message.contains("scene: rod.knot = ") && message.contains(words[1]),
+                "{message}"
             );
         }
     }
 }
 
 #[test]
-fn a_wish_sets_the_edges_of_every_case() {
+fn a_goal_sets_the_edges_of_every_case() {
     let table = KnotTable::builtin();
     let text = format!("accuracy = 0.05\n{KNOT}twist = 1.0\nslenderness = [40, 50]");
     let scene = parse(&text).unwrap();
     assert_eq!(parse(&scene.text()).unwrap(), scene);
-    let (granted, grant) = scene.granted(&table, 1).unwrap();
-    let grant = grant.unwrap();
-    let cases = granted.cases(&table).unwrap();
+    let (chosen, choice) = scene.with_chosen_settings(&table, 1).unwrap();
+    let choice = choice.unwrap();
+    let cases = chosen.cases(&table).unwrap();
     assert!(
         cases.len() == 2
             && cases
                 .iter()
-                .all(|c| c.rod.n_edges == grant.point.resolution as usize)
+                .all(|c| c.rod.n_edges == choice.point.resolution as usize)
     );
     let row = |case: &ElasticCase, cut| topo_analysis::SweepRow {
-        case: granted.case_name(case),
+        case: chosen.case_name(case),
         cut,
         ..Default::default()
     };
     let edges = parse(&format!("{KNOT}[accuracy]\nedges = [60, 90]")).unwrap();
-    let wished = ElasticScene {
-        wish: scene.wish,
+    let asked = ElasticScene {
+        goal: scene.goal,
         ..edges
     };
     assert_eq!(
-        wished
-            .granted(&table, 1)
+        asked
+            .with_chosen_settings(&table, 1)
             .unwrap()
             .0
             .cases(&table)
@@ -476,7 +476,7 @@ fn a_wish_sets_the_edges_of_every_case() {
         1
     );
     let row = row(&cases[0], 0.25);
-    let check = granted.check_of(&table, &grant, &[row]).unwrap();
+    let check = chosen.check_of(&table, &choice, &[row]).unwrap();
     assert_eq!(check.fixed_cuts.as_ref().unwrap().len(), 1);
     let budget = parse(&format!("budget = \"1h\"\n{KNOT}")).unwrap();
     assert_eq!(parse(&budget.text()).unwrap(), budget);

@@ -14,7 +14,7 @@ fn a_scene_says_what_is_modelled() {
     assert!(scene.flow.is_none() && scene.nematic.material.surface_order == Some(0.6));
     let cases = scene.cases();
     assert_eq!(cases.len(), 2);
-    assert_eq!(cases[1].nematic.pattern, SurfacePattern::Charge(5));
+    assert_eq!(cases[1].nematic.pattern, SurfacePattern::Winding(5));
     let flowing = parse("[nematic]\nradius = 15\nq = [2, 5]\n[flow]\nq = 5").unwrap();
     let with = |scene: &NematicScene| {
         let cases = scene.cases();
@@ -148,17 +148,17 @@ fn the_json_of_a_case_is_what_it_was() {
 }
 
 #[test]
-fn a_wish_fits_the_grid_of_every_case() {
+fn a_goal_fits_the_grid_of_every_case() {
     let scene = parse("accuracy = 0.1\n[nematic]\nradius = [15, 17]\nq = 2").unwrap();
     assert_eq!(parse(&scene.text()).unwrap(), scene);
-    let (granted, grant) = scene.granted(1).unwrap();
-    let spacing = grant.unwrap().point.resolution;
-    for (case, radius) in granted.cases().iter().zip([15.0, 17.0]) {
+    let (chosen, choice) = scene.with_chosen_settings(1).unwrap();
+    let spacing = choice.unwrap().point.resolution;
+    for (case, radius) in chosen.cases().iter().zip([15.0, 17.0]) {
         let single = parse(&format!(
             "accuracy = 0.1\n[nematic]\nradius = {radius}\nq = 2"
         ))
         .unwrap();
-        let (single, _) = single.granted(1).unwrap();
+        let (single, _) = single.with_chosen_settings(1).unwrap();
         assert_eq!(*case, single.cases()[0]);
         assert!(case.nematic.spacing <= spacing * (1.0 + 1e-9));
     }
@@ -178,17 +178,17 @@ fn a_cell_without_a_particle_has_no_winding() {
 fn assert_refused(scenes: &[(&str, [&str; 2])]) {
     for (more, words) in scenes {
         let text = format!("{COLLOID}{more}\n");
-        let told = parse(&text).expect_err(more).to_string();
-        assert!(told.contains("scene.toml"), "{more:?} gives {told:?}");
-        assert_words(&text, &told, words);
+        let message = parse(&text).expect_err(more).to_string();
+        assert!(message.contains("scene.toml"), "{more:?} gives {message:?}");
+        assert_words(&text, &message, words);
     }
 }
 
-fn assert_words(text: &str, told: &str, words: &[&str]) {
+fn assert_words(text: &str, message: &str, words: &[&str]) {
     for word in words {
         assert!(
-            told.contains(word),
-            "{text:?} gives {told:?} without {word:?}"
+            message.contains(word),
+            "{text:?} gives {message:?} without {word:?}"
         );
     }
 }
@@ -457,7 +457,7 @@ fn keys_above_and_across_tables_are_looked_at() {
             ["line 5: flow.boundary_residual = 0", "above zero"],
         ),
     ] {
-        let told = parse(text).expect_err(text).to_string();
-        assert_words(text, &told, &words);
+        let message = parse(text).expect_err(text).to_string();
+        assert_words(text, &message, &words);
     }
 }

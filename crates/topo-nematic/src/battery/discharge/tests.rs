@@ -188,7 +188,7 @@ fn stiff_drifts_stay_stable() {
 fn charged() -> crate::ChargedNematic {
     let parameters = NematicParameters {
         radius: 6.0,
-        pattern: SurfacePattern::Charge(2),
+        pattern: SurfacePattern::Winding(2),
         ..Default::default()
     };
     let battery = NematicBattery::new(&parameters, &Default::default()).unwrap();

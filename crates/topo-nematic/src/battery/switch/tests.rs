@@ -80,7 +80,7 @@ fn the_field_goes_on_into_the_sphere_about_as_steeply_as_outside() {
     let slope = |charge: i32, radius: f64| {
         let battery = battery(&NematicParameters {
             radius,
-            pattern: SurfacePattern::Charge(charge),
+            pattern: SurfacePattern::Winding(charge),
             ..Default::default()
         });
         let settings = ChargeSettings {

@@ -21,7 +21,7 @@ pub(super) struct History {
 
 /// What a checkpoint keeps of a history: the basis is made anew from it.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub(in crate::stokes) struct Kept {
+pub(in crate::stokes) struct SavedHistory {
     solutions: [Vec<f64>; N_KEPT],
     images: [Vec<f64>; N_KEPT],
     n_pushed: usize,
@@ -43,8 +43,8 @@ impl History {
         self.n_pushed = 0;
     }
 
-    pub fn kept(&self) -> Kept {
-        Kept {
+    pub fn kept(&self) -> SavedHistory {
+        SavedHistory {
             solutions: self.solutions.clone(),
             images: self.images.clone(),
             n_pushed: self.n_pushed,
@@ -52,7 +52,7 @@ impl History {
     }
 
     /// Takes up what was kept; whether it is of the same size.
-    pub fn restore(&mut self, kept: Kept) -> bool {
+    pub fn restore(&mut self, kept: SavedHistory) -> bool {
         let n = self.solutions[0].len();
         let fits = kept
             .solutions

@@ -1,6 +1,6 @@
 //! Every file of every kind of export, opened by VTK's own readers and numpy.
 
-use super::{ALL, CELL, COLLOID, FLOW, colloid, fibre, told, write};
+use super::{ALL, CELL, COLLOID, FLOW, colloid, fibre, report, write};
 use crate::data::read_csv;
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, BTreeSet};
@@ -103,7 +103,7 @@ fn wanted_of_colloid(case: &Path, particle: bool, flow: bool) -> All {
 }
 
 /// Files of two cuts of a fibre of 60 edges.
-fn wanted_of_fibre(told: &Value) -> All {
+fn wanted_of_fibre(report: &Value) -> All {
     let arrays = json!({ "s": 1, "tangent": 3, "curvature": 1, "stretch": 1, "energy_density": 1, "twist": 1 });
     let line = |points: usize, time: Option<f64>| Wanted {
         points,
@@ -113,7 +113,7 @@ fn wanted_of_fibre(told: &Value) -> All {
     };
     let mut all = All::from([("charged.vtp".to_owned(), line(60, None))]);
     for cut in [1, 2] {
-        let series = told[&format!("discharge-{cut}.pvd")]["files"].as_array();
+        let series = report[&format!("discharge-{cut}.pvd")]["files"].as_array();
         for entry in series.unwrap() {
             let file = entry[1].as_str().unwrap();
             assert!(file.starts_with(&format!("discharge-{cut}-")), "{file}");
@@ -124,10 +124,10 @@ fn wanted_of_fibre(told: &Value) -> All {
 }
 
 /// Each file opens in silence and holds what was wanted; all that is there was wanted.
-fn check(told: &Value, wanted: &All, facts: &[(&str, Value)]) {
-    for (file, found) in told.as_object().unwrap() {
+fn check(report: &Value, wanted: &All, facts: &[(&str, Value)]) {
+    for (file, found) in report.as_object().unwrap() {
         match file.rsplit('.').next().unwrap() {
-            "pvd" => check_series(told, file, found),
+            "pvd" => check_series(report, file, found),
             "npz" => check_facts(file, found, facts),
             _ => {
                 let w = wanted.get(file).unwrap_or_else(|| panic!("{file}"));
@@ -145,7 +145,7 @@ fn check(told: &Value, wanted: &All, facts: &[(&str, Value)]) {
         }
     }
     for file in wanted.keys() {
-        assert!(told[file].is_object(), "{file} is not there");
+        assert!(report[file].is_object(), "{file} is not there");
     }
 }
 
@@ -156,14 +156,14 @@ fn check_facts(file: &str, found: &Value, facts: &[(&str, Value)]) {
 }
 
 /// The files of a series are there, in the order of their times, each knowing its own.
-fn check_series(told: &Value, name: &str, found: &Value) {
+fn check_series(report: &Value, name: &str, found: &Value) {
     let files = found["files"].as_array().unwrap();
     assert!(!files.is_empty(), "{name}");
     let mut before = f64::NEG_INFINITY;
     for entry in files {
         let (time, file) = (entry[0].as_f64().unwrap(), entry[1].as_str().unwrap());
         assert!(time > before, "{name}: {file}");
-        assert_eq!(told[file]["facts"]["TimeValue"], time, "{name}: {file}");
+        assert_eq!(report[file]["facts"]["TimeValue"], time, "{name}: {file}");
         before = time;
     }
 }
@@ -195,12 +195,12 @@ fn python_vtk_opens_every_file_of_every_export() {
         assert_eq!(there, made.files.into_iter().collect::<BTreeSet<_>>());
     }
     let folders: Vec<&Path> = to.iter().map(|t| t.as_path()).collect();
-    let told = told(include_str!("../open_all.py"), &folders);
+    let report = report(include_str!("../open_all.py"), &folders);
     let mut n_empty = 0;
     for ((name, case, flow), to) in cases.iter().zip(&to) {
-        let told = &told[to.to_str().unwrap()];
+        let report = &report[to.to_str().unwrap()];
         if *name == "rod" {
-            check_fibre(told);
+            check_fibre(report);
             continue;
         }
         let wanted = wanted_of_colloid(case, *name != "cell", *flow);
@@ -222,16 +222,16 @@ fn python_vtk_opens_every_file_of_every_export() {
             facts.push(("q", json!(2.0)));
             facts.push(("nematic.pattern.charge", json!(2.0)));
         }
-        check(told, &wanted, &facts);
-        let flows = told["plane-03.vti"]["arrays"]["velocity_in_plane"].is_number();
+        check(report, &wanted, &facts);
+        let flows = report["plane-03.vti"]["arrays"]["velocity_in_plane"].is_number();
         assert_eq!(flows, *flow, "{name}");
     }
     // ring and lines go, and leave files that say so
     assert!(n_empty > 20, "{n_empty}");
 }
 
-fn check_fibre(told: &Value) {
-    let wanted = wanted_of_fibre(told);
+fn check_fibre(report: &Value) {
+    let wanted = wanted_of_fibre(report);
     assert!(wanted.len() > 4);
     let facts = [
         ("knot", json!("3_1")),
@@ -244,18 +244,18 @@ fn check_fibre(told: &Value) {
         ("units.energy", json!("E_0 = E_b h^2 L")),
         ("units.energy_density", json!("E_b h^2")),
     ];
-    check(told, &wanted, &facts);
+    check(report, &wanted, &facts);
     // the charged fibre ends where it began, a cut one does not
     let around: Vec<u64> = (0..60).chain([0]).collect();
-    assert_eq!(told["charged.vtp"]["corners"], json!(around));
+    assert_eq!(report["charged.vtp"]["corners"], json!(around));
     let along: Vec<u64> = (0..61).collect();
-    assert_eq!(told["discharge-2-00.vtp"]["corners"], json!(along));
-    let facts = |file: &str| told[file]["facts"].clone();
+    assert_eq!(report["discharge-2-00.vtp"]["corners"], json!(along));
+    let facts = |file: &str| report[file]["facts"].clone();
     assert_eq!(facts("charged.vtp")["state"], "charged");
     assert_eq!(facts("discharge-1-01.vtp")["state"], "discharging");
     assert_eq!(facts("discharge-1-00.vtp")["cut"], 0.0);
     assert_eq!(facts("discharge-2-00.vtp")["cut"], 0.5);
-    let archive = &told["fibre.npz"];
+    let archive = &report["fibre.npz"];
     assert_eq!(archive["facts"]["charged_closed"], true);
     assert_eq!(archive["facts"]["discharge2_closed"], false);
     assert_eq!(archive["arrays"]["charged_points"], json!([60, 3]));

@@ -192,7 +192,7 @@ impl Layout<'_> {
                 unit,
                 &tube,
             )?;
-            let time = told(shot.time);
+            let time = time_label(shot.time);
             canvas.text(
                 x + side[0] / 2.0,
                 top + height - 8.0,
@@ -206,7 +206,7 @@ impl Layout<'_> {
 }
 
 /// A time in T0 with as many decimals as it needs.
-fn told(time: f64) -> String {
+fn time_label(time: f64) -> String {
     if time == 0.0 {
         return "*t* = 0".to_owned();
     }
@@ -311,8 +311,8 @@ mod tests {
 
     #[test]
     fn times_are_told_briefly() {
-        assert_eq!(told(0.0), "*t* = 0");
-        assert_eq!(told(0.0123), "0.012 *T*_{0}");
-        assert_eq!(told(20.55), "20.6 *T*_{0}");
+        assert_eq!(time_label(0.0), "*t* = 0");
+        assert_eq!(time_label(0.0123), "0.012 *T*_{0}");
+        assert_eq!(time_label(20.55), "20.6 *T*_{0}");
     }
 }

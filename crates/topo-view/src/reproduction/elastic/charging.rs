@@ -76,7 +76,7 @@ fn both_hands(s: &Sweep, knot: &str) -> Option<(String, f64)> {
     let twist = top(s)?;
     let (plus, minus) = (s.at(knot, twist)?.first(), s.at(knot, -twist)?.first());
     let difference = asymmetry(s, knot, twist)?;
-    let told = format!(
+    let sentence = format!(
         "{} at θ′h = ±{twist}: energy {} and {} E₀ ({} %), writhe {} and {}",
         text::knot_name(knot),
         text::significant(plus.energy, 4),
@@ -85,28 +85,28 @@ fn both_hands(s: &Sweep, knot: &str) -> Option<(String, f64)> {
         text::number(plus.writhe, 2),
         text::number(minus.writhe, 2)
     );
-    Some((told, difference.abs()))
+    Some((sentence, difference.abs()))
 }
 
 pub fn trefoil(t: &Tables) -> Said {
-    let (told, difference) = both_hands(of(t)?, "3_1")?;
-    Some((told, Verdict::when(difference > SEEN)))
+    let (sentence, difference) = both_hands(of(t)?, "3_1")?;
+    Some((sentence, Verdict::when(difference > SEEN)))
 }
 
 pub fn figure_eight(t: &Tables) -> Said {
     let s = of(t)?;
-    let (told, kept) = both_hands(s, "4_1")?;
+    let (sentence, kept) = both_hands(s, "4_1")?;
     if kept > SEEN {
-        return Some((told, Verdict::NotConfirmed));
+        return Some((sentence, Verdict::NotConfirmed));
     }
     let twists = positive(s).into_iter();
     let single = twists.filter_map(|twist| of_one_image(s, "4_1", twist));
     let (Some(at_top), Some(all)) = (of_one_image(s, "4_1", top(s)?), Spread::of(single)) else {
-        return Some((format!("{told}; {NO_OTHER_IMAGE}"), Verdict::NotJudged));
+        return Some((format!("{sentence}; {NO_OTHER_IMAGE}"), Verdict::NotJudged));
     };
     Some((
         format!(
-            "{told}, of the better of two images; from one image alone they differ by {} %, at other twists by {} % at most",
+            "{sentence}, of the better of two images; from one image alone they differ by {} %, at other twists by {} % at most",
             text::significant(100.0 * at_top, 2),
             text::significant(100.0 * all.max, 2)
         ),
@@ -122,14 +122,14 @@ fn chirality(t: &Tables, name: &str, over: fn(Vec<f64>) -> Option<f64>) -> Said 
         over(twists.iter().filter_map(|t| of(*t)).collect())
     };
     let percent = |x: f64| text::significant(100.0 * x, 2);
-    let (mut chiral, mut mirror, mut told) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut chiral, mut mirror, mut sentence) = (Vec::new(), Vec::new(), Vec::new());
     for knot in s.knots() {
         if !AMPHICHIRAL.contains(&knot) {
             let seen = all(&|t| Some(asymmetry(s, knot, t)?.abs()));
             chiral.extend(seen.map(|a| (knot, a)));
         } else if let Some(a) = all(&|t| of_one_image(s, knot, t)) {
             mirror.push(a);
-            told.push(format!("{} {} %", text::knot_name(knot), percent(a)));
+            sentence.push(format!("{} {} %", text::knot_name(knot), percent(a)));
         }
     }
     let c = median(chiral.iter().map(|k| k.1))?;
@@ -139,8 +139,8 @@ fn chirality(t: &Tables, name: &str, over: fn(Vec<f64>) -> Option<f64>) -> Said 
         chiral.len()
     );
     let Some(m) = median(mirror) else {
-        let told = format!("{chiral_said}; of amphichiral knots {NO_OTHER_IMAGE}");
-        return Some((told, Verdict::NotJudged));
+        let sentence = format!("{chiral_said}; of amphichiral knots {NO_OTHER_IMAGE}");
+        return Some((sentence, Verdict::NotJudged));
     };
     let below = chiral.iter().filter(|k| k.1 <= 3.0 * m);
     let below: Vec<String> = below
@@ -153,7 +153,7 @@ fn chirality(t: &Tables, name: &str, over: fn(Vec<f64>) -> Option<f64>) -> Said 
     Some((
         format!(
             "{chiral_said}; from one image alone {}; {} chiral knots are above three times the median of these{but}",
-            told.join(" and "),
+            sentence.join(" and "),
             chiral.len() - below.len()
         ),
         Verdict::both(c > 3.0 * m, below.is_empty()),

@@ -24,8 +24,8 @@ pub fn slow_at_low_twist(t: &Tables, site: Site) -> Said {
     let (n, low) = (slow.clone().count(), slow.filter(|t| t.0 <= 1.0).count());
     let middle = text::number(middle, 1);
     if n == 0 {
-        let told = format!("no state takes twice the median t99 of all ({middle} T₀)");
-        return Some((told, Verdict::NotConfirmed));
+        let sentence = format!("no state takes twice the median t99 of all ({middle} T₀)");
+        return Some((sentence, Verdict::NotConfirmed));
     }
     Some((
         format!(
@@ -84,7 +84,7 @@ impl OverKnots {
         self.deviation / self.mean
     }
 
-    fn told(&self, place: &str) -> String {
+    fn text_of(&self, place: &str) -> String {
         format!(
             "{} T₀ {place} ({} of the mean, slowest over fastest {})",
             text::number(self.deviation, 2),
@@ -104,21 +104,21 @@ pub fn knots_washed_out(t: &Tables, name: &str, share: Share) -> Said {
     };
     // falls in one kind of cut may be a matter of the site: tell the mean of near ties too
     let ties = |twist| Some(OverKnots::at(s, twist, Site::NearTies, share)?.deviation);
-    let mut told = format!(
+    let mut sentence = format!(
         "standard deviation of {name} over the knots {}, {}, {}",
-        zero.told("without twist"),
-        right.told(&format!("at θ′h = +{twist}")),
-        left.told(&format!("at −{twist}"))
+        zero.text_of("without twist"),
+        right.text_of(&format!("at θ′h = +{twist}")),
+        left.text_of(&format!("at −{twist}"))
     );
     if s.cases.iter().any(|c| c.cuts.len() > 1) {
         let [a, b, c] = [0.0, twist, -twist].map(ties);
         let number = |x| text::number(x, 2);
-        told += &format!(
+        sentence += &format!(
             "; of the mean over near-tied cuts {}, {}, {} T₀",
             number(a?),
             number(b?),
             number(c?)
         );
     }
-    Some((told, Verdict::both(falls(&right), falls(&left))))
+    Some((sentence, Verdict::both(falls(&right), falls(&left))))
 }

@@ -27,8 +27,8 @@ pub fn to_the_last_mode(t: &Tables) -> Said {
     match &t.last {
         Some(last) => rates(&last.sweep, &last.folder),
         None => {
-            let (told, verdict) = rates(of(t)?, &t.results.join("elastic"))?;
-            Some((format!("followed to 99.9 % only: {told}"), verdict))
+            let (sentence, verdict) = rates(of(t)?, &t.results.join("elastic"))?;
+            Some((format!("followed to 99.9 % only: {sentence}"), verdict))
         }
     }
 }

@@ -42,8 +42,9 @@ pub fn takeover(t: &Tables) -> Said {
         Spread::of(found.iter().copied()),
         median(found.iter().copied()),
     ) else {
-        let told = format!("twist energy passes bending energy for none of {n} knots and hands");
-        return Some((told, Verdict::NotConfirmed));
+        let sentence =
+            format!("twist energy passes bending energy for none of {n} knots and hands");
+        return Some((sentence, Verdict::NotConfirmed));
     };
     let about_one = (0.75..=1.25).contains(&middle);
     let instead = if about_one { "" } else { " instead of about 1" };

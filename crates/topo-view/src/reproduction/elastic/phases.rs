@@ -27,14 +27,14 @@ fn passes_others(types: &[String], knot: &str) -> bool {
 }
 
 pub fn one_cut(t: &Tables) -> Said {
-    told(t, Site::Largest)
+    text_of(t, Site::Largest)
 }
 
 pub fn near_ties(t: &Tables) -> Said {
-    tied(t, told)
+    tied(t, text_of)
 }
 
-fn told(t: &Tables, site: Site) -> Said {
+fn text_of(t: &Tables, site: Site) -> Said {
     let s = of(t)?;
     let (mut through, mut n, mut of_7_4) = (0, 0, Vec::new());
     for case in s.knots().into_iter().filter_map(|k| s.at(k, 0.0)) {

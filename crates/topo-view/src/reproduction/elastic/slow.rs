@@ -58,7 +58,7 @@ struct Slow<'a> {
 }
 
 impl Slow<'_> {
-    fn told(&self) -> String {
+    fn text_of(&self) -> String {
         let (knot, factor) = (text::knot_name(self.knot), text::number(self.factor, 1));
         if self.not_under.is_empty() {
             format!("{knot} ({factor})")
@@ -97,10 +97,10 @@ pub fn robust(t: &Tables, site: Site) -> Said {
     }
     let list = |found: &[Slow<'_>], robust: bool| {
         let some = found.iter().filter(|k| k.not_under.is_empty() == robust);
-        let told: Vec<String> = some.map(Slow::told).collect();
-        match &told[..] {
+        let named: Vec<String> = some.map(Slow::text_of).collect();
+        match &named[..] {
             [] => "none".to_owned(),
-            told => told.join(", "),
+            named => named.join(", "),
         }
     };
     let (by_99, by_90) = (slow(t, s, site, T99), slow(t, s, site, T90));

@@ -62,7 +62,7 @@ pub fn reversal(t: &Tables) -> Said {
             Verdict::NotJudged,
         );
     }
-    let told: Vec<String> = least
+    let sentence: Vec<String> = least
         .iter()
         .map(|(q, c)| format!("{} (q = {q})", text::number(*c, 2)))
         .collect();
@@ -70,7 +70,7 @@ pub fn reversal(t: &Tables) -> Said {
     runs.said(
         format!(
             "least correlation of the velocity with the first: {}; it turns in {n_turning} of {}",
-            told.join(", "),
+            sentence.join(", "),
             least.len()
         ),
         Verdict::of_all(n_turning, least.len()),
@@ -171,7 +171,7 @@ pub fn slow_mode(t: &Tables) -> Said {
             .iter()
             .filter_map(|r| Some(r.late_rate? / mode(r))),
     );
-    let told = ratio.map_or(String::new(), |r| {
+    let sentence = ratio.map_or(String::new(), |r| {
         let with_flow = if last.flow.is_on() {
             format!(", and {} times as fast with flow", text::number(FASTER_WITH_FLOW, 3))
         } else {
@@ -184,7 +184,7 @@ pub fn slow_mode(t: &Tables) -> Said {
     });
     runs.said(
         format!(
-            "the 99.9 % rate at q = {} is {} times smaller than at its peak{told}",
+            "the 99.9 % rate at q = {} is {} times smaller than at its peak{sentence}",
             last.q,
             text::number(drop, 1)
         ),

@@ -130,7 +130,7 @@ impl Finding {
         }
     }
 
-    /// What is told of several components together: nothing but whether each is certain.
+    /// What is known of several components together: nothing but whether each is certain.
     pub(super) fn link(components: &[Component]) -> Self {
         Self {
             certain: components.iter().all(|c| c.finding.certain),

@@ -67,7 +67,7 @@ fn claim_11_needs_a_knot_that_is_slow_under_every_choice() {
     let made = under(factors(&[]), &[&[("7_4", 1.8)], &[("7_4", 1.8)]]);
     assert_eq!(verdict(11, &made), NotConfirmed);
     assert!(CLAIMS[10].finding(11, &tables(slow())).is_none());
-    // the mean over near ties is told beside it
+    // the mean over near ties is reported beside it
     let tied = with_tie(factors(&[("7_4", 2.2)]), 6.0);
     let made = under(tied, &[&[("7_4", 1.8)]]);
     assert_eq!(
@@ -144,7 +144,7 @@ fn claim_14_needs_either_hand_to_wash_the_knots_out() {
     assert_eq!(verdict(14, &spread(2.0, 2.0, 0.3)), NotConfirmed);
     // every time shorter, by one factor: the knots matter as before
     assert_eq!(verdict(14, &spread(1.0, 1.0, 4.0)), NotConfirmed);
-    // t99 is told beside t90
+    // t99 is reported beside t90
     let mut made = spread(0.3, 0.3, 4.0);
     for case in &mut made.elastic.as_mut().unwrap().cases {
         case.cuts[0].t99 = Some(if case.first().knot == "7_1" {

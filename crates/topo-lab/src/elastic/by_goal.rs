@@ -10,31 +10,31 @@ use super::keys::EDGES;
 use super::scene::ElasticScene;
 use crate::cost::threads;
 use crate::error::LabError;
-use crate::wish::{Grant, Load, Measured, grant};
+use crate::goal::{Choice, Load, Measured, choose};
 
 impl ElasticScene {
-    /// The scene with the settings that grant its wish, and which these are; as it is without a wish.
+    /// The scene with the settings that meets its goal, and which these are; as it is without a goal.
     ///
     /// # Errors
-    /// A wish that no measured setting grants, with what can be had, or an unknown knot.
-    pub fn granted(
+    /// A goal that no measured setting meets, with what is possible, or an unknown knot.
+    pub fn with_chosen_settings(
         &self,
         table: &KnotTable,
         jobs: usize,
-    ) -> Result<(Self, Option<Grant>), LabError> {
-        let Some(wish) = self.wish else {
+    ) -> Result<(Self, Option<Choice>), LabError> {
+        let Some(goal) = self.goal else {
             return Ok((self.clone(), None));
         };
         let load = Load {
             cases: self.without(EDGES).cases(table)?.len() as f64 * weight(self),
             threads: threads(jobs),
         };
-        let grant = grant(Measured::Rod, wish, load).map_err(|reason| LabError::Wish {
-            wish: wish.to_string(),
+        let choice = choose(Measured::Rod, goal, load).map_err(|reason| LabError::Goal {
+            goal: goal.to_string(),
             reason,
         })?;
-        let point = &grant.point;
-        Ok((self.at(point.resolution, point.tolerance), Some(grant)))
+        let point = &choice.point;
+        Ok((self.at(point.resolution, point.tolerance), Some(choice)))
     }
 
     /// The coarser scene whose difference to the runs `rows` of this one tells their error: the same states and cuts.
@@ -44,7 +44,7 @@ impl ElasticScene {
     pub fn check_of(
         &self,
         table: &KnotTable,
-        grant: &Grant,
+        choice: &Choice,
         rows: &[SweepRow],
     ) -> Result<Self, LabError> {
         let cases = self.cases(table)?;
@@ -58,7 +58,7 @@ impl ElasticScene {
                 cuts.entry(state.clone()).or_default().push(row.cut);
             }
         }
-        let point = &grant.point;
+        let point = &choice.point;
         Ok(Self {
             folder: format!("{}-check", self.folder),
             fixed_cuts: Some(cuts),

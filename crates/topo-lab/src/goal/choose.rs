@@ -1,7 +1,7 @@
-//! Which measured setting grants a wish.
+//! Which measured setting meets a goal.
 
-use super::Wish;
-use super::grant::{Grant, Point};
+use super::Goal;
+use super::choice::{Choice, Point};
 use super::record::Measured;
 use crate::cost::EFFICIENCY;
 
@@ -20,54 +20,54 @@ pub(crate) struct Load {
 /// Picks the cheapest setting that is accurate enough, or the most accurate one that is cheap enough.
 ///
 /// # Errors
-/// What can be had instead.
+/// What is possible instead.
 ///
 /// # Validation
 /// `the_cheapest_that_is_good_enough`, `the_best_that_is_cheap_enough`
-pub(crate) fn grant(table: Measured, wish: Wish, load: Load) -> Result<Grant, String> {
+pub(crate) fn choose(table: Measured, goal: Goal, load: Load) -> Result<Choice, String> {
     let factor = table.record().and_then(|r| r.factor);
     let scale = factor.map_or(UNKNOWN_SCALE, |f| f.scale);
-    let granted = choose(&table.points(), scale, wish, load)?;
-    Ok(Grant {
+    let chosen = choose_from(&table.points(), scale, goal, load)?;
+    Ok(Choice {
         unit: table.unit(),
         stale: table.stale(),
-        ..granted
+        ..chosen
     })
 }
 
-pub(super) fn choose(
+pub(super) fn choose_from(
     points: &[Point],
     scale: f64,
-    wish: Wish,
+    goal: Goal,
     load: Load,
-) -> Result<Grant, String> {
+) -> Result<Choice, String> {
     let seconds = |p: &Point| load.cases * p.cpu_seconds;
-    let granted = |p: &Point| Grant {
-        wish,
+    let choice = |p: &Point| Choice {
+        goal,
         point: *p,
         unit: "",
         scale,
         stale: None,
         cpu_seconds: seconds(p),
     };
-    match wish {
-        Wish::Accuracy(error) => {
+    match goal {
+        Goal::Accuracy(error) => {
             let good = points.iter().filter(|p| p.high_error <= error);
             let cheapest = good.min_by(|a, b| seconds(a).total_cmp(&seconds(b)));
-            cheapest.map(granted).ok_or_else(|| {
+            cheapest.map(choice).ok_or_else(|| {
                 let best = points.iter().map(|p| p.high_error).fold(1.0, f64::min);
-                // rounded up, so that what is told can be asked for
+                // rounded up, so that what is said can be asked for
                 let best = (best * 1e4).ceil() / 1e4;
                 format!(
                     "the most accurate setting measured is off by up to {best} in nine cases of ten: ask for accuracy = {best} or more, or give settings in a table [accuracy]"
                 )
             })
         }
-        Wish::Budget(budget) => {
+        Goal::Budget(budget) => {
             let held = budget * load.threads as f64 * EFFICIENCY;
             let cheap = points.iter().filter(|p| seconds(p) <= held);
             let best = cheap.min_by(|a, b| a.high_error.total_cmp(&b.high_error));
-            best.map(granted).ok_or_else(|| {
+            best.map(choice).ok_or_else(|| {
                 let least = points.iter().map(seconds).fold(f64::INFINITY, f64::min);
                 let least = (least / (load.threads as f64 * EFFICIENCY)).ceil();
                 format!("the cheapest setting measured takes about {least:.0} s: give as much, or ask for fewer cases")
@@ -109,7 +109,7 @@ mod tests {
 
     #[test]
     fn the_cheapest_that_is_good_enough() {
-        let of = |error| choose(&table(), 1.5, Wish::Accuracy(error), LOAD);
+        let of = |error| choose_from(&table(), 1.5, Goal::Accuracy(error), LOAD);
         assert_eq!(of(0.1).unwrap().point.resolution, 100.0);
         assert_eq!(of(0.05).unwrap().point.resolution, 200.0);
         let fine = of(0.002).unwrap();
@@ -127,15 +127,15 @@ mod tests {
     fn a_cheaper_setting_that_is_finer_is_taken() {
         let mut points = table();
         points[1].cpu_seconds = 9.0;
-        let granted = choose(&points, 1.5, Wish::Accuracy(0.02), LOAD).unwrap();
-        assert_eq!(granted.point.resolution, 400.0);
-        let granted = choose(&points, 1.5, Wish::Budget(100.0), LOAD).unwrap();
-        assert_eq!(granted.point.resolution, 400.0);
-        // what just can be had is granted, what is asked in vain is told with what can be had
+        let chosen = choose_from(&points, 1.5, Goal::Accuracy(0.02), LOAD).unwrap();
+        assert_eq!(chosen.point.resolution, 400.0);
+        let chosen = choose_from(&points, 1.5, Goal::Budget(100.0), LOAD).unwrap();
+        assert_eq!(chosen.point.resolution, 400.0);
+        // what is just possible is chosen; else the message says what is possible
         points[2].high_error = 0.01234;
-        for (asked, is_granted) in [(0.01234, true), (0.0124, true), (0.0123, false)] {
-            let found = choose(&points, 1.5, Wish::Accuracy(asked), LOAD);
-            assert_eq!(found.is_ok(), is_granted);
+        for (asked, is_possible) in [(0.01234, true), (0.0124, true), (0.0123, false)] {
+            let found = choose_from(&points, 1.5, Goal::Accuracy(asked), LOAD);
+            assert_eq!(found.is_ok(), is_possible);
             if let Err(reason) = found {
                 assert!(reason.contains("accuracy = 0.0124 or more"), "{reason}");
             }
@@ -144,7 +144,7 @@ mod tests {
 
     #[test]
     fn the_best_that_is_cheap_enough() {
-        let of = |seconds| choose(&table(), 1.5, Wish::Budget(seconds), LOAD);
+        let of = |seconds| choose_from(&table(), 1.5, Goal::Budget(seconds), LOAD);
         assert_eq!(of(100.0).unwrap().point.resolution, 400.0);
         assert_eq!(of(10.0).unwrap().point.resolution, 200.0);
         assert_eq!(of(2.0).unwrap().point.resolution, 100.0);

@@ -1,10 +1,10 @@
-//! Do estimated errors hold? The settings of wishes on cases that the table was not measured on, against converged references.
+//! Do estimated errors hold? The settings of goals on cases that the table was not measured on, against converged references.
 
 use serde::{Deserialize, Serialize};
 
-use super::Wish;
-use super::choice::{Load, choose};
-use super::grant::Point;
+use super::Goal;
+use super::choice::Point;
+use super::choose::{Load, choose_from};
 use super::pair::{Measurement, cases};
 use crate::system::System;
 use crate::tradeoff::TradeoffRow;
@@ -62,13 +62,13 @@ fn scale_covering(
     let ratios = names.iter().flat_map(|case| {
         points.iter().filter_map(|p| {
             let found = Measurement::of(system, &p.setting(), case, rows);
-            Some(found.error? / p.raw_estimate(found.told)?)
+            Some(found.error? / p.raw_estimate(found.coarser_error)?.0)
         })
     });
     quantile(ratios, share)
 }
 
-/// One run by wish beside its reference.
+/// One run with a goal beside its reference.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CheckRow {
     /// `rod` or `nematic`.
@@ -122,8 +122,8 @@ pub fn check_estimates(
         threads: 1,
     };
     let picked = ASKED.map(|asked| {
-        let grant = choose(points, scale, Wish::Accuracy(asked), load);
-        (asked, grant.ok().map(|g| g.point))
+        let choice = choose_from(points, scale, Goal::Accuracy(asked), load);
+        (asked, choice.ok().map(|c| c.point))
     });
     let mut found = Vec::new();
     for point in points {
@@ -131,7 +131,7 @@ pub fn check_estimates(
         let asked: Vec<String> = of.map(|p| format!("{} %", 100.0 * p.0)).collect();
         for case in cases(rows) {
             let measured = Measurement::of(system, &point.setting(), case, rows);
-            let estimate = point.raw_estimate(measured.told);
+            let estimate = point.raw_estimate(measured.coarser_error);
             found.push(CheckRow {
                 system: system.name().to_owned(),
                 case: case.to_owned(),
@@ -141,7 +141,7 @@ pub fn check_estimates(
                 result: measured.result,
                 reference: measured.reference,
                 relative_error: measured.error,
-                estimate: estimate.map(|e| scale * e),
+                estimate: estimate.map(|(error, _)| scale * error),
                 cpu_seconds: measured.cpu_seconds,
             });
         }

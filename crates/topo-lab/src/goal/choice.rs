@@ -1,11 +1,11 @@
-//! The setting that grants a wish, and what the error of its runs came to.
+//! The setting that meets a goal, and what the error of its runs came to.
 
 use serde::{Deserialize, Serialize};
 
-use super::Wish;
+use super::Goal;
 use super::setting::Setting;
 
-/// One setting, as measured over the cases of a trade-off in the time that wishes are about.
+/// One setting, as measured over the cases of a trade-off in the time that goals are about.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Point {
     /// Edges of a rod, or the spacing of a colloid's grid in xi_N.
@@ -41,21 +41,38 @@ impl Point {
         self.setting().ratio()
     }
 
-    /// Estimate, up to the factor of the table, of the relative error of a run: what the coarser run tells, and no less than
-    /// a quarter of what nine cases of ten stay below. None where nothing is told.
-    pub(super) fn raw_estimate(&self, told: Option<f64>) -> Option<f64> {
-        told.map(|told| told.max(LEAST * self.high_error))
+    /// Estimate, up to the factor of the table, of the relative error of a run: the error that a coarser run shows, and no less than
+    /// a quarter of what nine cases of ten stay below. None without one.
+    pub(super) fn raw_estimate(&self, coarser_error: Option<f64>) -> Option<(f64, ErrorKind)> {
+        let floor = LEAST * self.high_error;
+        coarser_error.map(|error| {
+            if error > floor {
+                (error, ErrorKind::Own)
+            } else {
+                (floor, ErrorKind::Floor)
+            }
+        })
     }
+}
+
+/// Where an estimate of an error comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum ErrorKind {
+    /// The difference to the coarser run of the same case.
+    Own,
+    /// The least estimate of the setting, as the two runs differ by less.
+    Floor,
 }
 
 /// Least estimate, in 90th percentiles of the setting: two runs may agree by chance.
 const LEAST: f64 = 0.25;
 
-/// A wish with the setting that grants it.
+/// A goal with the setting chosen for it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Grant {
+pub struct Choice {
     /// What was asked for.
-    pub wish: Wish,
+    pub goal: Goal,
     /// The setting and what was measured of it.
     pub point: Point,
     /// What its resolution counts, such as `edges`.
@@ -64,16 +81,15 @@ pub struct Grant {
     pub scale: f64,
     /// Why the table does not speak of the present code, if it does not.
     pub stale: Option<String>,
-    /// Processor seconds expected, the runs included that tell the error.
+    /// Processor seconds expected, the runs that show the error included.
     pub cpu_seconds: f64,
 }
 
-impl Grant {
-    /// Estimate of the relative error of a run of which a coarser one tells so much; without that nothing is known, and it is
-    /// one.
-    pub(super) fn estimate(&self, told: Option<f64>) -> f64 {
-        let raw = self.point.raw_estimate(told);
-        raw.map_or(1.0, |raw| self.scale * raw)
+impl Choice {
+    /// Estimate of the relative error of a run, from what a coarser one shows; without that nothing is known, and it is one.
+    pub(super) fn estimate(&self, coarser_error: Option<f64>) -> (f64, Option<ErrorKind>) {
+        let raw = self.point.raw_estimate(coarser_error);
+        raw.map_or((1.0, None), |(raw, kind)| (self.scale * raw, Some(kind)))
     }
 }
 
@@ -92,4 +108,6 @@ pub struct ErrorRow {
     pub coarser: Option<f64>,
     /// Estimate of the relative error of the result.
     pub relative_error: Option<f64>,
+    /// Where the estimate comes from; empty where the coarser run gave no time.
+    pub kind: Option<ErrorKind>,
 }

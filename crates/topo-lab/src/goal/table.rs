@@ -1,6 +1,6 @@
 //! The measured table: what a resolution and a tolerance cost, and how far off they are.
 
-use super::grant::Point;
+use super::choice::Point;
 use super::pair::{Measurement, cases, quantity};
 use super::setting::Setting;
 use crate::system::System;
@@ -23,7 +23,7 @@ fn settings(ladder: &[(f64, f64)]) -> Vec<Setting> {
     (0..ladder.len()).filter_map(beside).collect()
 }
 
-/// The settings that wishes choose from, as a trade-off measured them, from coarse to fine.
+/// The settings that goals choose from, as a trade-off measured them, from coarse to fine.
 ///
 /// # Validation
 /// `each_setting_has_a_coarser_one_beside_it`

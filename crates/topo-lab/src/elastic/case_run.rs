@@ -10,14 +10,14 @@ use crate::LabError;
 
 /// A case with what it starts from.
 #[derive(Clone, Copy)]
-pub(crate) struct CaseJob<'a> {
+pub(crate) struct CaseInputs<'a> {
     pub scene: &'a ElasticScene,
     pub case: &'a ElasticCase,
     pub tight: &'a TightKnot,
     pub table: &'a KnotTable,
 }
 
-impl CaseJob<'_> {
+impl CaseInputs<'_> {
     /// The error of this case.
     pub(crate) fn refused(&self, source: RodError) -> LabError {
         LabError::Rod {
@@ -42,7 +42,7 @@ impl CaseJob<'_> {
 }
 
 /// One cut of a charged rod, followed to its end.
-pub(super) struct FollowedCut {
+pub(super) struct CutResults {
     pub discharge: Discharge,
     /// Of the energy before the cut.
     pub times: DischargeTimes,

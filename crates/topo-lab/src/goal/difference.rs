@@ -11,8 +11,8 @@ const LEAST_RATIO: f64 = 1.05;
 /// coarse, says, as two runs may agree in one time by chance; none where one is lacking.
 ///
 /// # Validation
-/// `errors_of_second_order_are_told`
-pub(crate) fn told(times: &[(Option<f64>, Option<f64>)], ratio: f64) -> Option<f64> {
+/// `errors_of_second_order_are_found`
+pub(crate) fn difference_error(times: &[(Option<f64>, Option<f64>)], ratio: f64) -> Option<f64> {
     let of = |&(fine, coarse): &(Option<f64>, Option<f64>)| {
         let (fine, coarse) = fine.zip(coarse).filter(|_| ratio > LEAST_RATIO)?;
         Some((coarse / fine - 1.0).abs() / gain(ratio))
@@ -24,7 +24,7 @@ pub(crate) fn told(times: &[(Option<f64>, Option<f64>)], ratio: f64) -> Option<f
 /// What a time `fine` and one on a grid coarser by `ratio` tend to on finer grids.
 ///
 /// # Validation
-/// `errors_of_second_order_are_told`
+/// `errors_of_second_order_are_found`
 pub(crate) fn extrapolated(fine: f64, coarse: f64, ratio: f64) -> f64 {
     fine + (fine - coarse) / gain(ratio)
 }
@@ -39,26 +39,29 @@ mod tests {
     use super::*;
 
     #[test]
-    fn errors_of_second_order_are_told() {
+    fn errors_of_second_order_are_found() {
         let time = |h: f64| 8.0 - 0.3 * h * h;
         let (fine, coarse) = (time(0.5), time(0.75));
         assert!((extrapolated(fine, coarse, 1.5) - 8.0).abs() < 1e-12);
-        let error = told(&[(Some(fine), Some(coarse))], 1.5).unwrap();
+        let error = difference_error(&[(Some(fine), Some(coarse))], 1.5).unwrap();
         assert!((error - 0.075 / fine).abs() < 1e-12);
         // what differs most counts
         for other in [0.99, 1.01] {
             let two = [(Some(2.0), Some(2.0 * other)), (Some(fine), Some(coarse))];
-            let error = told(&two, 1.5).unwrap();
+            let error = difference_error(&two, 1.5).unwrap();
             let both = [0.01, coarse / fine - 1.0].map(|d| d.abs() / 1.25);
             assert!((error - f64::max(both[0], both[1])).abs() < 1e-12);
         }
-        // without a second run, or with one on the same grid, nothing is told
+        // without a second run, or with one on the same grid, there is no estimate
         for (a, b, ratio) in [
             (Some(3.0), None, 1.5),
             (None, Some(3.0), 1.5),
             (Some(3.0), Some(3.1), 1.0),
         ] {
-            assert_eq!(told(&[(a, b), (Some(1.0), Some(1.0))], ratio), None);
+            assert_eq!(
+                difference_error(&[(a, b), (Some(1.0), Some(1.0))], ratio),
+                None
+            );
         }
     }
 }

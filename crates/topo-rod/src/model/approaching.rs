@@ -15,7 +15,7 @@ use crate::contact::{ActivePair, ContactPairs};
 ///
 /// The pairs are looked for only for a few steps after a refused one, as ordinary runs need none of this.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub(super) struct Expected {
+pub(super) struct ApproachingPairs {
     pairs: Vec<ActivePair>,
     margin: f64,
     prepared: Option<u64>,
@@ -27,7 +27,7 @@ const MARGIN: f64 = 0.25;
 /// Accepted steps after a refused one in which pairs are looked for.
 const WARY: u32 = 16;
 
-impl Expected {
+impl ApproachingPairs {
     /// For steps with errors of `tolerance`.
     pub(super) fn new(tolerance: f64) -> Self {
         Self {

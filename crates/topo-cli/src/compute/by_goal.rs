@@ -5,29 +5,29 @@ use std::path::Path;
 use crate::duration::duration;
 use crate::output;
 use topo_analysis::{median, quantile};
-use topo_lab::{ErrorRow, Grant, Wish};
+use topo_lab::{Choice, ErrorRow, Goal};
 
-/// Tells which setting grants a wish.
-pub fn tell_grant(grant: &Grant) {
-    let (p, unit) = (&grant.point, grant.unit);
-    if let Some(reason) = &grant.stale {
+/// Says which setting meets a goal.
+pub fn report_choice(choice: &Choice) {
+    let (p, unit) = (&choice.point, choice.unit);
+    if let Some(reason) = &choice.stale {
         output::warning(reason);
         note!("warning: {reason}");
     }
     note!(
         "{}: {} {unit}, tolerance {:e}; measured on {} cases: off by {:.2} % (median), {:.2} % (90th percentile); {} of one processor",
-        grant.wish,
+        choice.goal,
         p.resolution,
         p.tolerance,
         p.n_cases,
         100.0 * p.median_error,
         100.0 * p.high_error,
-        duration(grant.cpu_seconds),
+        duration(choice.cpu_seconds),
     );
 }
 
 /// Tells what is in the table of errors at `path`.
-pub fn tell_errors(grant: &Grant, rows: &[ErrorRow], path: &Path) {
+pub fn report_errors(choice: &Choice, rows: &[ErrorRow], path: &Path) {
     output::table(path);
     say!("estimated errors:");
     for r in rows {
@@ -51,7 +51,7 @@ pub fn tell_errors(grant: &Grant, rows: &[ErrorRow], path: &Path) {
             path.display()
         );
     }
-    if let Wish::Accuracy(asked) = grant.wish {
+    if let Goal::Accuracy(asked) = choice.goal {
         let n = errors().filter(|e| *e > asked).count();
         if n > 0 {
             say!(

@@ -1,20 +1,20 @@
-//! Accuracy by wish: a scene says how far off its discharge times may be, or how long it may take, and the measured table
+//! Accuracy as a goal: a scene says how far off its discharge times may be, or how long it may take, and the measured table
 //! says which settings do that.
 
 mod choice;
+mod choose;
 mod difference;
 mod errors;
-mod grant;
 mod holds;
 mod pair;
 mod record;
 mod setting;
 mod table;
 
-pub(crate) use choice::{Load, grant};
+pub use choice::{Choice, ErrorKind, ErrorRow, Point};
+pub(crate) use choose::{Load, choose};
 pub(crate) use difference::extrapolated;
 pub use errors::{errors_of_colloids, errors_of_rods};
-pub use grant::{ErrorRow, Grant, Point};
 pub use holds::{CheckRow, Cover, check_estimates, factor_of_estimates};
 pub use record::{Factor, Measured, Record, Stamp, table_hash};
 pub use table::points;
@@ -28,15 +28,15 @@ use serde::{Deserialize, Deserializer, Serialize};
 /// What a scene asks for instead of settings.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Wish {
+pub enum Goal {
     /// Largest relative error of the last discharge time listed: t99 of a rod, t99.9 of a colloid.
     Accuracy(f64),
     /// Seconds that the cases may take together.
     Budget(f64),
 }
 
-impl Wish {
-    /// A wish for an accuracy.
+impl Goal {
+    /// A goal for an accuracy.
     ///
     /// # Errors
     /// What would be right.
@@ -48,7 +48,7 @@ impl Wish {
         }
     }
 
-    /// A wish for a budget of time, such as `10 min`.
+    /// A goal for a budget of time, such as `10 min`.
     ///
     /// # Errors
     /// What would be right.
@@ -63,7 +63,7 @@ impl Wish {
     }
 }
 
-impl fmt::Display for Wish {
+impl fmt::Display for Goal {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Accuracy(error) => write!(f, "accuracy = {error}"),
@@ -81,10 +81,10 @@ fn duration(seconds: f64) -> String {
     humantime::format_duration(time).to_string()
 }
 
-/// The key `budget` of a scene with this wish.
-pub(crate) fn budget(wish: Option<Wish>) -> Option<String> {
-    match wish {
-        Some(Wish::Budget(seconds)) => Some(duration(seconds)),
+/// The key `budget` of a scene with this goal.
+pub(crate) fn budget(goal: Option<Goal>) -> Option<String> {
+    match goal {
+        Some(Goal::Budget(seconds)) => Some(duration(seconds)),
         _ => None,
     }
 }
@@ -92,58 +92,58 @@ pub(crate) fn budget(wish: Option<Wish>) -> Option<String> {
 /// The key `accuracy` of a scene: a number, or a table of settings.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(untagged)]
-pub(crate) enum WishOr<T> {
+pub(crate) enum GoalOr<T> {
     /// A relative error.
-    Wish(f64),
+    Goal(f64),
     /// Settings.
     Settings(T),
 }
 
-impl<T: Default> Default for WishOr<T> {
+impl<T: Default> Default for GoalOr<T> {
     fn default() -> Self {
         Self::Settings(T::default())
     }
 }
 
 // A derived untagged enum would lose the line and the key of what is wrong.
-impl<'de, T: Deserialize<'de>> Deserialize<'de> for WishOr<T> {
+impl<'de, T: Deserialize<'de>> Deserialize<'de> for GoalOr<T> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         struct Either<T>(PhantomData<T>);
         impl<'de, T: Deserialize<'de>> Visitor<'de> for Either<T> {
-            type Value = WishOr<T>;
+            type Value = GoalOr<T>;
 
             fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
                 f.write_str("a relative error such as 0.02, or a table [accuracy]")
             }
 
             fn visit_f64<E: de::Error>(self, x: f64) -> Result<Self::Value, E> {
-                Ok(WishOr::Wish(x))
+                Ok(GoalOr::Goal(x))
             }
 
             fn visit_i64<E: de::Error>(self, x: i64) -> Result<Self::Value, E> {
-                Ok(WishOr::Wish(x as f64))
+                Ok(GoalOr::Goal(x as f64))
             }
 
             fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Self::Value, A::Error> {
-                T::deserialize(MapAccessDeserializer::new(map)).map(WishOr::Settings)
+                T::deserialize(MapAccessDeserializer::new(map)).map(GoalOr::Settings)
             }
         }
         deserializer.deserialize_any(Either(PhantomData))
     }
 }
 
-impl<T: Default + PartialEq> WishOr<T> {
-    /// The settings and the wish of a scene with this key and the key `budget`, or the key at fault, its value and what would
+impl<T: Default + PartialEq> GoalOr<T> {
+    /// The settings and the goal of a scene with this key and the key `budget`, or the key at fault, its value and what would
     /// be right.
     pub(crate) fn with_budget(
         self,
         budget: Option<&str>,
-    ) -> Result<(T, Option<Wish>), (&'static str, String, String)> {
+    ) -> Result<(T, Option<Goal>), (&'static str, String, String)> {
         match (self, budget) {
-            (Self::Wish(error), None) => Wish::accuracy(error)
-                .map(|wish| (T::default(), Some(wish)))
+            (Self::Goal(error), None) => Goal::accuracy(error)
+                .map(|goal| (T::default(), Some(goal)))
                 .map_err(|remedy| ("accuracy", error.to_string(), remedy)),
-            (Self::Wish(error), Some(_)) => Err((
+            (Self::Goal(error), Some(_)) => Err((
                 "accuracy",
                 error.to_string(),
                 "keep either accuracy or budget".to_owned(),
@@ -154,8 +154,8 @@ impl<T: Default + PartialEq> WishOr<T> {
                 format!("\"{text}\""),
                 "it stands instead of the table [accuracy]: keep one of the two".to_owned(),
             )),
-            (Self::Settings(_), Some(text)) => Wish::budget(text)
-                .map(|wish| (T::default(), Some(wish)))
+            (Self::Settings(_), Some(text)) => Goal::budget(text)
+                .map(|goal| (T::default(), Some(goal)))
                 .map_err(|remedy| ("budget", format!("\"{text}\""), remedy)),
         }
     }
@@ -174,11 +174,11 @@ mod tests {
     #[derive(Debug, Deserialize)]
     struct File {
         #[serde(default)]
-        accuracy: WishOr<Settings>,
+        accuracy: GoalOr<Settings>,
         budget: Option<String>,
     }
 
-    fn parse(text: &str) -> Result<(Settings, Option<Wish>), String> {
+    fn parse(text: &str) -> Result<(Settings, Option<Goal>), String> {
         let file: File = toml::from_str(text).map_err(|e| e.to_string())?;
         file.accuracy
             .with_budget(file.budget.as_deref())
@@ -186,23 +186,23 @@ mod tests {
     }
 
     #[test]
-    fn a_number_is_a_wish_and_a_table_is_settings() {
+    fn a_number_is_a_goal_and_a_table_is_settings() {
         assert_eq!(
             parse("accuracy = 0.02").unwrap().1,
-            Some(Wish::Accuracy(0.02))
+            Some(Goal::Accuracy(0.02))
         );
-        assert_eq!(parse("accuracy = 1").unwrap().1, Some(Wish::Accuracy(1.0)));
+        assert_eq!(parse("accuracy = 1").unwrap().1, Some(Goal::Accuracy(1.0)));
         assert_eq!(
             parse("budget = \"10 min\"").unwrap().1,
-            Some(Wish::Budget(600.0))
+            Some(Goal::Budget(600.0))
         );
-        let (settings, wish) = parse("[accuracy]\nedges = 120").unwrap();
-        assert_eq!((settings.edges, wish), (Some(120), None));
+        let (settings, goal) = parse("[accuracy]\nedges = 120").unwrap();
+        assert_eq!((settings.edges, goal), (Some(120), None));
         assert_eq!(parse("").unwrap(), (Settings::default(), None));
     }
 
     #[test]
-    fn bad_wishes_are_refused_with_what_would_be_right() {
+    fn bad_goals_are_refused_with_what_would_be_right() {
         for (text, words) in [
             ("accuracy = 0.0", ["accuracy = 0", "0.02"]),
             ("accuracy = -1", ["accuracy = -1", "0.02"]),
@@ -226,8 +226,8 @@ mod tests {
     }
 
     #[test]
-    fn wishes_are_told_as_they_are_written() {
-        assert_eq!(Wish::Accuracy(0.02).to_string(), "accuracy = 0.02");
-        assert_eq!(Wish::Budget(600.0).to_string(), "budget = \"10m\"");
+    fn goals_are_printed_as_they_are_written() {
+        assert_eq!(Goal::Accuracy(0.02).to_string(), "accuracy = 0.02");
+        assert_eq!(Goal::Budget(600.0).to_string(), "budget = \"10m\"");
     }
 }

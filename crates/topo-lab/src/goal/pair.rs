@@ -3,7 +3,7 @@
 use crate::system::System;
 use crate::tradeoff::{TradeoffRow, fitted_ratio};
 
-use super::difference::told;
+use super::difference::difference_error;
 use super::setting::Setting;
 
 /// A setting of a table on one case.
@@ -12,8 +12,8 @@ pub(super) struct Measurement {
     pub reference: Option<f64>,
     /// |result/reference − 1|.
     pub error: Option<f64>,
-    /// What the coarser run tells of it.
-    pub told: Option<f64>,
+    /// Relative error by the difference to a coarser run.
+    pub coarser_error: Option<f64>,
     /// Processor seconds of both runs.
     pub cpu_seconds: f64,
 }
@@ -41,13 +41,13 @@ impl Measurement {
             result: time(own),
             reference: own.and_then(|r| r.reference),
             error: own.and_then(|r| r.relative_error),
-            told: told(&pairs, ratio),
+            coarser_error: difference_error(&pairs, ratio),
             cpu_seconds: own.into_iter().chain(coarser).map(|r| r.cpu_seconds).sum(),
         }
     }
 }
 
-/// The times that are compared, that which wishes are about last. The late time of a rod hangs on ties of contacts, and two
+/// The times that are compared, that which goals are about last. The late time of a rod hangs on ties of contacts, and two
 /// resolutions may agree in it by chance.
 fn times(system: System) -> &'static [&'static str] {
     match system {
@@ -57,7 +57,7 @@ fn times(system: System) -> &'static [&'static str] {
     }
 }
 
-/// The time that wishes are about.
+/// The time that goals are about.
 pub(super) fn quantity(system: System) -> Option<&'static str> {
     times(system).last().copied()
 }

@@ -5,32 +5,32 @@ use super::keys::SPACING;
 use super::scene::{NematicScene, fit};
 use crate::cost::threads;
 use crate::error::LabError;
-use crate::wish::{Grant, Load, Measured, grant};
+use crate::goal::{Choice, Load, Measured, choose};
 
 impl NematicScene {
-    /// The scene with the settings that grant its wish, and which these are; as it is without a wish.
+    /// The scene with the settings that meets its goal, and which these are; as it is without a goal.
     ///
     /// # Errors
-    /// A wish that no measured setting grants, with what can be had, or parameters that make no sense.
-    pub fn granted(&self, jobs: usize) -> Result<(Self, Option<Grant>), LabError> {
-        let Some(wish) = self.wish else {
+    /// A goal that no measured setting meets, with what is possible, or parameters that make no sense.
+    pub fn with_chosen_settings(&self, jobs: usize) -> Result<(Self, Option<Choice>), LabError> {
+        let Some(goal) = self.goal else {
             return Ok((self.clone(), None));
         };
         let load = Load {
             cases: weight(&self.without(SPACING))?,
             threads: threads(jobs),
         };
-        let grant = grant(Measured::Nematic, wish, load).map_err(|reason| LabError::Wish {
-            wish: wish.to_string(),
+        let choice = choose(Measured::Nematic, goal, load).map_err(|reason| LabError::Goal {
+            goal: goal.to_string(),
             reason,
         })?;
-        let point = &grant.point;
-        Ok((self.at(point.resolution, point.tolerance), Some(grant)))
+        let point = &choice.point;
+        Ok((self.at(point.resolution, point.tolerance), Some(choice)))
     }
 
-    /// The coarser scene whose difference to a granted one tells its error.
-    pub fn check_of(&self, grant: &Grant) -> Self {
-        let point = &grant.point;
+    /// The coarser scene whose difference to a chosen one tells its error.
+    pub fn check_of(&self, choice: &Choice) -> Self {
+        let point = &choice.point;
         Self {
             folder: format!("{}-check", self.folder),
             ..self.at(point.check_resolution, point.check_tolerance)

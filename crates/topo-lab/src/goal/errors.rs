@@ -1,7 +1,7 @@
 //! What a run says of its own error: a coarser run beside it, and the measured table.
 
-use super::difference::told;
-use super::grant::{ErrorRow, Grant};
+use super::choice::{Choice, ErrorRow};
+use super::difference::difference_error;
 use topo_analysis::NematicRow;
 use topo_analysis::SweepRow;
 
@@ -11,7 +11,7 @@ use topo_analysis::SweepRow;
 ///
 /// # Validation
 /// `cuts_are_matched_by_their_order`
-pub fn errors_of_rods(grant: &Grant, rows: &[SweepRow], coarser: &[SweepRow]) -> Vec<ErrorRow> {
+pub fn errors_of_rods(choice: &Choice, rows: &[SweepRow], coarser: &[SweepRow]) -> Vec<ErrorRow> {
     let place = |k: usize, rows: &[SweepRow]| {
         let same = |r: &&SweepRow| r.is_same_state(&rows[k]);
         rows[..k].iter().filter(same).count()
@@ -23,14 +23,18 @@ pub fn errors_of_rods(grant: &Grant, rows: &[SweepRow], coarser: &[SweepRow]) ->
             .nth(place(k, rows));
         let coarser = beside.and_then(|r| r.t99);
         let early = (row.t50, beside.and_then(|r| r.t50));
-        let told = told(&[early, (row.t99, coarser)], grant.point.ratio());
+        let (estimate, kind) = choice.estimate(difference_error(
+            &[early, (row.t99, coarser)],
+            choice.point.ratio(),
+        ));
         ErrorRow {
             case: row.case.clone(),
             cut: Some(row.cut),
             quantity: "t99".to_owned(),
             result: row.t99,
             coarser,
-            relative_error: row.t99.map(|_| grant.estimate(told)),
+            relative_error: row.t99.map(|_| estimate),
+            kind: kind.filter(|_| row.t99.is_some()),
         }
     };
     rows.iter().enumerate().map(of).collect()
@@ -38,7 +42,7 @@ pub fn errors_of_rods(grant: &Grant, rows: &[SweepRow], coarser: &[SweepRow]) ->
 
 /// Errors of the colloids `rows`, beside coarser ones.
 pub fn errors_of_colloids(
-    grant: &Grant,
+    choice: &Choice,
     rows: &[NematicRow],
     coarser: &[NematicRow],
 ) -> Vec<ErrorRow> {
@@ -46,15 +50,16 @@ pub fn errors_of_colloids(
         let beside = coarser.iter().find(|r| r.is_same_discharge(row));
         let coarser = beside.and_then(|r| r.t999);
         // grids are fitted to the cell
-        let ratio = beside.map_or(grant.point.ratio(), |r| r.spacing / row.spacing);
-        let told = told(&[(row.t999, coarser)], ratio);
+        let ratio = beside.map_or(choice.point.ratio(), |r| r.spacing / row.spacing);
+        let (estimate, kind) = choice.estimate(difference_error(&[(row.t999, coarser)], ratio));
         ErrorRow {
             case: row.case.clone(),
             cut: None,
             quantity: "t99.9".to_owned(),
             result: row.t999,
             coarser,
-            relative_error: row.t999.map(|_| grant.estimate(told)),
+            relative_error: row.t999.map(|_| estimate),
+            kind: kind.filter(|_| row.t999.is_some()),
         }
     };
     rows.iter().map(of).collect()
@@ -62,12 +67,12 @@ pub fn errors_of_colloids(
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Point, Wish};
+    use super::super::{ErrorKind, Goal, Point};
     use super::*;
 
-    fn grant() -> Grant {
-        Grant {
-            wish: Wish::Accuracy(0.1),
+    fn choice() -> Choice {
+        Choice {
+            goal: Goal::Accuracy(0.1),
             point: Point {
                 resolution: 100.0,
                 tolerance: 1e-3,
@@ -111,7 +116,7 @@ mod tests {
                 ..row("5_2", 0.2, Some(2.0))
             },
         ];
-        let found = errors_of_rods(&grant(), &rows, &coarser);
+        let found = errors_of_rods(&choice(), &rows, &coarser);
         let errors: Vec<_> = found.iter().map(|r| r.relative_error).collect();
         // a difference that tells less than a quarter of the 90th percentile counts as that
         assert!((errors[0].unwrap() - 0.02).abs() < 1e-12);
@@ -121,10 +126,13 @@ mod tests {
         assert_eq!((errors[2], errors[3]), (Some(1.0), None));
         // where t99 agrees but t50 does not, this tells
         assert!((errors[4].unwrap() - 0.06).abs() < 1e-12);
+        let kinds: Vec<_> = found.iter().map(|r| r.kind).collect();
+        let (own, floor) = (Some(ErrorKind::Own), Some(ErrorKind::Floor));
+        assert_eq!(kinds, [floor, own, None, None, own]);
     }
 
     #[test]
-    fn errors_of_colloids_are_told_by_the_grids_they_had() {
+    fn errors_of_colloids_follow_from_the_grids_they_had() {
         let row = |q: u32, spacing: f64, t999: Option<f64>| NematicRow {
             q,
             spacing,
@@ -140,7 +148,7 @@ mod tests {
             row(4, 0.95, None),
         ];
         let coarser = [row(2, 1.19, time(1.19)), row(4, 1.19, Some(2.0))];
-        let found = errors_of_colloids(&grant(), &rows, &coarser);
+        let found = errors_of_colloids(&choice(), &rows, &coarser);
         let error = 0.3 * 0.95 * 0.95 / time(0.95).unwrap();
         assert!((found[0].relative_error.unwrap() - 2.0 * error).abs() < 1e-12);
     }

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::grant::Point;
+use super::choice::Point;
 use crate::elastic;
 use crate::nematic;
 use crate::system::System;
@@ -175,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn tables_of_other_results_or_factors_of_other_tables_are_told() {
+    fn tables_of_other_results_or_factors_of_other_tables_are_named() {
         let stamp = |results| Stamp {
             results,
             commit: "abc".to_owned(),
@@ -202,10 +202,10 @@ mod tests {
             (Some(record(5, Some(("other", 5)))), "not of this table"),
             (Some(record(5, None)), "--set factor --record"),
         ] {
-            let told = stale(record.as_ref(), "t", 5).unwrap();
+            let message = stale(record.as_ref(), "t", 5).unwrap();
             assert!(
-                told.contains(words) && told.contains("cargo xtask"),
-                "{told}"
+                message.contains(words) && message.contains("cargo xtask"),
+                "{message}"
             );
         }
     }
