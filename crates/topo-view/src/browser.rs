@@ -20,8 +20,9 @@ pub const SEND: &str = "parent.postMessage(JSON.stringify(report), '*');";
 impl Browser {
     /// The browser of this machine; panics where there is none.
     pub fn start() -> Self {
+        let needs = Outside::Browser.needs();
         Self {
-            program: Outside::Browser.find().expect(Outside::Browser.needs()),
+            program: Outside::Browser.find().expect(needs),
             folder: tempfile::tempdir().unwrap(),
         }
     }

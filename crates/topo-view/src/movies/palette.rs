@@ -9,6 +9,9 @@ pub const N_COLORS: usize = 255;
 const BITS: usize = 6;
 const N_BINS: usize = 1 << (3 * BITS);
 
+/// Colour of the ground of every frame.
+const GROUND: Rgb = [255; 3];
+
 /// Largest shift of a channel by dithering: about half a step of the palette in a shaded surface.
 const DITHER: f32 = 2.5;
 
@@ -54,8 +57,10 @@ impl Palette {
             bins[*k].sum = bins[*k].mean().map(|m| m * weight);
             bins[*k].count = weight;
         }
-        let mut boxes = vec![Box::of(used.clone(), &bins)];
-        while boxes.len() < N_COLORS {
+        // the ground stays as it is, whatever is near it in colour
+        let shaded: Vec<usize> = used.into_iter().filter(|k| *k != bin_of(&GROUND)).collect();
+        let mut boxes = vec![Box::of(shaded, &bins)];
+        while boxes.len() + 1 < N_COLORS {
             let worst =
                 (0..boxes.len()).max_by(|a, b| boxes[*a].spread.total_cmp(&boxes[*b].spread));
             let Some(cut) = worst.and_then(|k| boxes[k].halves(&bins).map(|h| (k, h))) else {
@@ -65,10 +70,8 @@ impl Palette {
             boxes[k] = low;
             boxes.push(high);
         }
-        let colors: Vec<Rgb> = boxes
-            .iter()
-            .map(|b| b.mean.map(|m| m.round() as u8))
-            .collect();
+        let means = boxes.iter().map(|b| b.mean.map(|m| m.round() as u8));
+        let colors: Vec<Rgb> = [GROUND].into_iter().chain(means).collect();
         let nearest = (0..N_BINS)
             .into_par_iter()
             .map(|k| nearest_of(&colors, bins[k].color(k)))
