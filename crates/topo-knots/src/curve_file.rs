@@ -1,7 +1,7 @@
 //! Curves from and to files: comma-separated values, XYZ, and Geomview's VECT, the format of Ridgerunner and KnotPlot.
 //!
 //! Reading order: `text` (bytes to lines), `cells` (lines to numbers), `columns` and `rows` (which of them are coordinates), `table` (rows to components and
-//! frames), `xyz` (headers, counts and titles), `vect`, and `write`. Nothing of a file is dropped unsaid: what is no coordinate is told in
+//! frames), `xyz` (headers, counts and titles), `vect`, and `write`. Nothing of a file is dropped unsaid: what is no coordinate is listed in
 //! [`CurveFile::notes`] or refused.
 
 mod cells;
