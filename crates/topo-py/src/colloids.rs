@@ -1,7 +1,5 @@
 //! The nematic battery: charge, switch, discharge.
 
-use std::path::PathBuf;
-
 use numpy::ndarray::{Array, Array2, Array3};
 use numpy::{IntoPyArray, PyArray1, PyArray2};
 use pyo3::exceptions::PyRuntimeError;
@@ -14,11 +12,10 @@ use topo_nematic::record::NematicSample;
 use topo_nematic::ring::ring_line;
 use topo_nematic::{
     ChargeSettings, ChargedNematic, DischargeSettings, EnergyParts, FlowParameters,
-    NematicAccuracy, NematicBattery, NematicParameters, NematicState, RunHooks, SwitchSettings,
-    Threads,
+    NematicAccuracy, NematicBattery, NematicParameters, NematicState, SwitchSettings, Threads,
 };
 
-use crate::attend::{Leave, Reporter, attend};
+use crate::attend::{Checkpoint, Leave, Reporter, attend, hooks};
 use crate::refusal::Refusal;
 use crate::rods::{curve, stop};
 use crate::values::settings;
@@ -26,16 +23,6 @@ use crate::values::settings;
 /// A colloid between plates.
 #[pyclass(frozen)]
 pub struct ColloidBattery(NematicBattery);
-
-/// A file for checkpoints and the seconds between them.
-type Checkpoint = Option<(PathBuf, f64)>;
-
-fn with_file<'a>(hooks: RunHooks<'a>, file: &Checkpoint) -> RunHooks<'a> {
-    match file {
-        Some((path, seconds)) => hooks.with_checkpoint(path, *seconds),
-        None => hooks,
-    }
-}
 
 /// What a run says: how far it is, or the nematic at an output time.
 enum Notice {
@@ -119,7 +106,7 @@ impl ColloidBattery {
         let (token, wants) = (interrupt.clone(), observer.is_some());
         let work = move |reporter: &Reporter<Notice, ChargedNematic>| {
             let mut see = |p: &Progress| reporter.report(Notice::Progress(*p));
-            let hooks = with_file(RunHooks::new(&token), &checkpoint);
+            let hooks = hooks(&token, &checkpoint);
             let mut hooks = if wants {
                 hooks.with_progress(&mut see)
             } else {
@@ -227,8 +214,8 @@ impl SwitchedColloid {
                 }
                 rings.extend(line.map(|line| (s.time, line)));
             };
-            let hooks = RunHooks::new(&token).with_samples(&mut see);
-            let run = switched.discharge(&settings, &mut with_file(hooks, &checkpoint))?;
+            let mut hooks = hooks(&token, &checkpoint).with_samples(&mut see);
+            let run = switched.discharge(&settings, &mut hooks)?;
             Ok((run, rings))
         };
         let listen = |py: Python<'_>, notice: Notice| notice.say(py, observer.as_ref());
