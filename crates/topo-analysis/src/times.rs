@@ -36,7 +36,7 @@ impl DischargeTimes {
         Self::between(curve, parts, [start, 0.0], shares)
     }
 
-    /// As [`of`](Self::of), shares counting from an energy `start` down to that of a final state, `end`; none where nothing is
+    /// As [`of`](Self::of), with shares of the energy between `start` and that of a final state, `end`; none where nothing is
     /// stored between them.
     pub fn between(
         curve: &DischargeCurve,
@@ -82,7 +82,7 @@ impl DischargeTimes {
         }
     }
 
-    /// Time at which `share` was released, if that share was asked for and reached.
+    /// Time at which `share` was released, if that share was requested and reached.
     pub fn at(&self, share: f64) -> Option<Interpolated> {
         let k = self.shares.iter().position(|s| (s - share).abs() < 1e-12)?;
         self.times[k]

@@ -20,7 +20,7 @@ pub struct Sample<'a, S> {
     pub ledger: &'a Ledger,
 }
 
-/// Something that looks at a run now and then.
+/// Something that observes a run at scheduled times.
 pub trait Observer<S> {
     /// Looks at one sample.
     fn observe(&mut self, sample: &Sample<'_, S>);
@@ -150,7 +150,7 @@ impl Schedule {
         self
     }
 
-    /// Whether `later` is this schedule, gone through some way.
+    /// Whether `later` is this schedule after some of its times have passed.
     pub fn leads_to(&self, later: &Self) -> bool {
         self.kind == later.kind && self.exact == later.exact && self.next <= later.next
     }

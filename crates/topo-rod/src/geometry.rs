@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use crate::RodState;
 
-/// Edges shorter than this share of their natural length have no direction that rounding would not turn.
+/// Edges shorter than this share of their natural length have no reliable direction: rounding would turn it.
 const COLLAPSED: f64 = 1e-3;
 
 /// Geometry of one state: what bend, twist, stretch and twist viscosity share.

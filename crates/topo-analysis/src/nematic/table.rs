@@ -99,7 +99,7 @@ pub struct NematicRow {
     /// Anisotropy of the external field; empty where none is modelled.
     #[serde(default)]
     pub field_anisotropy: Option<f64>,
-    /// Local error aimed at.
+    /// Target of the local error: no unit.
     #[serde(default)]
     pub tolerance: f64,
     /// Free energy after charging.
@@ -113,7 +113,7 @@ pub struct NematicRow {
     /// Lowest eigenvalue of the Hessian of the energy at the charged state, in L/ξ_N²: a small change along its mode decays at Γ
     /// times this.
     pub lowest_eigenvalue: Option<f64>,
-    /// What it says of the charged state: minimum, saddle or marginal.
+    /// What the eigenvalue means for the charged state: minimum, saddle or marginal.
     pub state: Option<MinimumState>,
     /// Mean distance of the ring from the axis.
     pub ring_radius: Option<f64>,
@@ -121,7 +121,7 @@ pub struct NematicRow {
     pub ring_mode: Option<u32>,
     /// Amplitude of that mode.
     pub ring_amplitude: Option<f64>,
-    /// Time at which half of the energy after the switch was released.
+    /// Time at which half of the energy after the switch was released, in τ_N.
     pub t50: Option<f64>,
     /// Same for 90 %.
     pub t90: Option<f64>,
@@ -129,7 +129,7 @@ pub struct NematicRow {
     pub t99: Option<f64>,
     /// Same for 99.9 %.
     pub t999: Option<f64>,
-    /// Time at which half of the charged energy was released, the switch included.
+    /// Time at which half of the charged energy was released, the switch included, in τ_N.
     pub t50_charged: Option<f64>,
     /// Same for 90 %.
     pub t90_charged: Option<f64>,
@@ -147,7 +147,7 @@ pub struct NematicRow {
     pub stokes_updates: u64,
     /// Iterations of the particle's constraint in all of them.
     pub stokes_iterations: u64,
-    /// Processor seconds, charge and discharge.
+    /// Processor time of charge and discharge, in seconds.
     pub cpu_seconds: f64,
     /// Largest number of bytes held by fields, lists and solvers.
     pub peak_bytes: u64,
@@ -224,7 +224,7 @@ pub struct LinePoint {
     pub time: Option<f64>,
     /// Which line.
     pub line: usize,
-    /// Whether it closes on itself.
+    /// Whether it is closed.
     pub closed: bool,
     /// Place.
     pub x: f64,
@@ -242,11 +242,11 @@ pub struct LinePoint {
 pub struct SlicePoint {
     /// Time since the switch; empty for the charged state.
     pub time: Option<f64>,
-    /// Place across.
+    /// Horizontal position.
     pub x: f64,
-    /// Place upwards.
+    /// Vertical position.
     pub z: f64,
-    /// Degree of order S.
+    /// Order S.
     pub order: f64,
     /// Director.
     pub nx: f64,

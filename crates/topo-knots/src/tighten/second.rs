@@ -33,7 +33,7 @@ pub struct SecondOpinion {
     pub converged: bool,
     /// Evaluations of energy and gradient.
     pub n_evaluations: usize,
-    /// Processor seconds.
+    /// Processor time, in seconds.
     pub cpu_seconds: f64,
 }
 
@@ -49,7 +49,7 @@ pub fn second_opinion(tight: &TightKnot) -> Result<SecondOpinion, KnotError> {
     second_opinion_until(tight, &Interrupt::new())
 }
 
-/// As [`second_opinion`], but given up when `interrupt` asks.
+/// As [`second_opinion`], but stopped when `interrupt` requests it.
 ///
 /// # Errors
 /// As [`second_opinion`], and [`KnotError::Interrupted`] with the curve of the first method.
