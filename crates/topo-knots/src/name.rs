@@ -215,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn mirrored_shapes_are_told_by_their_name() {
+    fn mirrored_shapes_are_known_by_their_name() {
         for name in ["m3_1", "m4_1", "m3_1#4_1", "4_1#m5_1", "3_1#m3_1#m3_1"] {
             assert!(is_mirror_image(name), "{name}");
             assert!(!is_mirror_image(&mirror_name(name)), "{name}");

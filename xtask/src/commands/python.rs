@@ -11,7 +11,7 @@ use topo_cli::CliError;
 const CRATE: &str = "crates/topo-py";
 /// What the tests need besides numpy; notebooks and pictures are tested where their packages are there.
 const NEEDED: &str = "import maturin, pytest, numpy";
-/// What a reader without it is told.
+/// What is said where it is missing.
 const NEEDS: &str = "needs Python with maturin, pytest and numpy (the one that TOPO_PYTHON names)";
 
 /// The Python that `TOPO_PYTHON` names, if it has these modules.

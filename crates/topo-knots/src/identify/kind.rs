@@ -43,7 +43,7 @@ impl Handedness {
 /// hand of 10_71 stays open. Beyond, a name means that nothing contradicts it: see [`is_certain`](Self::is_certain).
 ///
 /// # Validation
-/// `all_types_to_ten_crossings_are_told_apart`, `names_the_table_and_its_mirrors`.
+/// `all_types_to_ten_crossings_are_distinguished`, `names_the_table_and_its_mirrors`.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct KnotType {

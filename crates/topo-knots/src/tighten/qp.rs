@@ -391,7 +391,7 @@ mod tests {
     }
 
     #[test]
-    fn active_and_idle_rows_are_told_apart() {
+    fn active_and_idle_rows_are_distinguished() {
         // Each vertex is drawn to (1, 0, 0); the first row keeps vertex 0 above y = 2, the second one is idle.
         let gradient: Vec<f64> = (0..8).flat_map(|_| [-2.0, 0.0, 0.0]).collect();
         let rows = [

@@ -286,7 +286,7 @@ mod tests {
     }
 
     #[test]
-    fn what_an_earlier_run_left_is_told_apart_and_computed_again() {
+    fn what_an_earlier_run_left_is_distinguished_and_computed_again() {
         let table = KnotTable::builtin();
         let scene = ElasticScene::parse(SCENE, Path::new("scene.toml")).unwrap();
         let folder = tempfile::tempdir().unwrap();

@@ -260,7 +260,7 @@ mod tests {
     }
 
     #[test]
-    fn a_damaged_checkpoint_is_told_and_the_case_begun_anew() {
+    fn a_damaged_checkpoint_is_reported_and_the_case_begun_anew() {
         let scene = NematicScene::parse(SCENE, Path::new("scene.toml")).unwrap();
         let folder = tempfile::tempdir().unwrap();
         let calm = run_nematic_sweep(&scene, &settings(folder.path(), 1), &|_| {}).unwrap();
