@@ -15,13 +15,13 @@ pub struct KnotRow {
     pub knot: String,
     /// Vertices of the tight polygon.
     pub vertices: usize,
-    /// Its ropelength.
+    /// Its ropelength, in tube radii.
     pub length_over_radius: f64,
-    /// Published ropelength, if any.
+    /// Published ropelength, in tube radii, if any.
     pub reference: Option<f64>,
     /// Excess over the published one, in per cent.
     pub excess_percent: Option<f64>,
-    /// Writhe.
+    /// Writhe: no unit.
     pub writhe: f64,
     /// Average crossing number.
     pub average_crossing_number: f64,

@@ -8,7 +8,7 @@ use topo_core::DischargeCurve;
 pub struct Interpolated {
     /// The time, in the unit of the curve.
     pub value: f64,
-    /// Difference of the exponential and the linear interpolation between the two steps around it.
+    /// Difference of the exponential and the linear interpolation between the two steps around it, in the unit of the curve.
     pub error: f64,
 }
 

@@ -38,7 +38,7 @@ pub struct EnergyEvent {
     pub name: Name,
     /// When it happened, in the model's unit of time.
     pub time: f64,
-    /// Stored energy that left the system with it.
+    /// Stored energy that left the system with it, in the model's unit.
     pub removed: f64,
 }
 

@@ -12,7 +12,7 @@ pub struct Sample<'a, S> {
     pub time: f64,
     /// Accepted steps so far.
     pub step: u64,
-    /// Length of the last accepted step; 0 before the first.
+    /// Length of the last accepted step, in the model's unit of time; 0 before the first.
     pub dt: f64,
     /// The state.
     pub state: &'a S,

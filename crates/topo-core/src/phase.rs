@@ -37,7 +37,7 @@ pub trait PhaseExtension {
 pub struct PhaseReport<E> {
     /// Why it ended.
     pub stop: StopReason,
-    /// Time it covered.
+    /// Time it covered, in the battery's unit.
     pub time: f64,
     /// Accepted steps.
     pub n_steps: u64,

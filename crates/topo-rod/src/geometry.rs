@@ -16,7 +16,7 @@ pub struct Geometry {
     pub tangent: Vec<Vector3<f64>>,
     /// c_i = t_{i−1}·t_i of each interior vertex (1 at free ends).
     pub cosine: Vec<f64>,
-    /// Curvature binormal kb_i = 2 t_{i−1} × t_i/(1 + c_i), |kb| = 2 tan(φ/2) (0 at free ends).
+    /// Curvature binormal kb_i = 2 t_{i−1} × t_i/(1 + c_i), |kb| = 2 tan(φ/2): no unit (0 at free ends).
     pub binormal: Vec<Vector3<f64>>,
 }
 

@@ -38,13 +38,13 @@ impl Reading {
 /// Lengths of a rod once the reading has been applied, in units of h.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Tube {
-    /// Natural length L of the rod.
+    /// Natural length L of the rod, in h.
     pub length: f64,
-    /// Distance d_c below which two strands repel each other.
+    /// Distance d_c below which two strands repel each other, in h.
     pub contact_diameter: f64,
-    /// Distance below which friction acts between two strands.
+    /// Distance below which friction acts between two strands, in h.
     pub friction_range: f64,
-    /// Length of the start curve (longer than `length` when the rod starts stretched).
+    /// Length of the start curve, in h (longer than `length` when the rod starts stretched).
     pub start_length: f64,
 }
 

@@ -129,6 +129,9 @@ impl CentrelineViscosity {
     }
 
     /// Assembles and factorises the matrix at a state. Without friction it is constant and factorised once.
+    ///
+    /// # Errors
+    /// [`SparseError`] when the matrix cannot be factorised.
     pub fn prepare(
         &mut self,
         state: &RodState,
@@ -353,6 +356,9 @@ impl TwistViscosity {
     }
 
     /// Assembles and factorises M_θ + `stiffness` Σ_i (w_i − w_{i−1})².
+    ///
+    /// # Errors
+    /// [`SparseError`] when the matrix cannot be factorised.
     pub fn prepare(
         &mut self,
         chain: Chain,

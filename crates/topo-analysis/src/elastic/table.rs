@@ -22,13 +22,13 @@ pub struct SweepRow {
     /// Slenderness L/h.
     #[serde(default)]
     pub slenderness: f64,
-    /// Ratio α of twist to bending stiffness.
+    /// Ratio α of twist to bending stiffness: no unit.
     #[serde(default)]
     pub twist_ratio: f64,
     /// Stretch stiffness γ = E/E_b.
     #[serde(default)]
     pub stretch_ratio: f64,
-    /// Stiffness k_c of the contact; empty without contact.
+    /// Stiffness k_c of the contact, in E_b/h³; empty without contact.
     #[serde(default)]
     pub contact_stiffness: Option<f64>,
     /// η_f/η; empty without friction.
@@ -61,7 +61,7 @@ pub struct SweepRow {
     /// one image was charged, and in older tables without this column.
     #[serde(default)]
     pub energy_other_image: Option<f64>,
-    /// Writhe after charging.
+    /// Writhe after charging: no unit.
     pub writhe: f64,
     /// Total twist after charging, in turns.
     pub total_twist: f64,

@@ -1,4 +1,4 @@
-//! Thickness of a polygon: the radius of the fattest tube around it.
+//! Thickness of a polygon: the radius of the thickest tube around it.
 
 use nalgebra::Vector3;
 
@@ -29,7 +29,7 @@ pub struct Thickness {
     pub min_rad: f64,
     /// Smallest doubly critical self-distance, dcsd.
     pub dcsd: f64,
-    /// Radius of the fattest tube, min(min_rad, dcsd / 2).
+    /// Radius of the thickest tube, min(min_rad, dcsd / 2).
     pub tau: f64,
 }
 

@@ -43,7 +43,7 @@ pub struct Fire {
 /// Sums over all unknowns at the present positions, for [`Fire::step`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FireSums {
-    /// F · F; positive.
+    /// F · F, which is positive.
     pub force_squared: f64,
     /// F · v.
     pub power: f64,
@@ -58,13 +58,13 @@ pub struct FireSums {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FireStep {
-    /// b: 0, or a negative time that takes half of an uphill step back.
+    /// Factor b of the velocity: 0, or a negative time that takes half of an uphill step back.
     pub back: f64,
-    /// a_v.
+    /// Factor a_v of the velocity.
     pub on_velocity: f64,
-    /// a_F.
+    /// Factor a_F of the force: a time.
     pub on_force: f64,
-    /// Δt.
+    /// Time step Δt.
     pub forth: f64,
 }
 

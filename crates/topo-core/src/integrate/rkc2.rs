@@ -153,13 +153,13 @@ impl Chebyshev {
 /// Factors of one stage: displacements and rates (times the step) that make up the next displacement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rkc2Stage {
-    /// Of the last displacement, mu.
+    /// Factor μ of the last displacement.
     pub on_last: f64,
-    /// Of the one before, nu.
+    /// Factor ν of the displacement before that.
     pub on_before: f64,
-    /// Of the rate at the last one.
+    /// Factor of the step times the rate at the last displacement.
     pub on_rate: f64,
-    /// Of the rate at the start of the step.
+    /// Factor of the step times the rate at its start.
     pub on_start_rate: f64,
 }
 

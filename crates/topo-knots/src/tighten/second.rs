@@ -27,7 +27,7 @@ pub struct SecondOpinion {
     pub curve: Polyline,
     /// Its length over its thickness, which is found by brute force, in units of the tube radius.
     pub length_over_radius: f64,
-    /// Ropelength of the loosened curve that the method started from.
+    /// Ropelength of the loosened curve that the method started from, in tube radii.
     pub start_length_over_radius: f64,
     /// Whether it came to rest.
     pub converged: bool,
