@@ -181,6 +181,62 @@ fn docs_cite_only_known_works() {
     }
 }
 
+/// Keys of the works in docs/references.bib with the address of each that has one.
+fn addresses(bib: &str) -> Vec<(&str, Option<String>)> {
+    let field = |entry: &str, name: &str| {
+        let value = entry.split_once(&format!("{name} = {{"))?.1;
+        Some(value[..value.find("}\n")?].to_owned())
+    };
+    let entries = bib.split("\n@").skip(1);
+    let one = |entry| {
+        let key = str::split(entry, ['{', ',']).nth(1).unwrap();
+        // as an address has them
+        let doi = field(entry, "doi").map(|d| d.replace('<', "%3C").replace('>', "%3E"));
+        let doi = doi.map(|d| format!("https://doi.org/{d}"));
+        (key, doi.or_else(|| field(entry, "url")))
+    };
+    entries.map(one).collect()
+}
+
+/// A work that the documentation of an item cites is a link to the address that docs/references.bib has of it.
+#[test]
+fn docs_link_the_works_they_cite() {
+    let bib = fs::read_to_string(root().join("docs/references.bib")).unwrap();
+    let addresses = addresses(&bib);
+    let mut n = 0;
+    let crates = root().join("crates");
+    let is_documented = |path: &Path| path.starts_with(&crates) && !path.ends_with("tests.rs");
+    for (path, text) in sources().iter().filter(|(path, _)| is_documented(path)) {
+        let text = text.split("#[cfg(test)]\nmod ").next().unwrap();
+        let comments = |l: &&str| l.starts_with("///") || l.starts_with("//!");
+        for block in text
+            .lines()
+            .map(str::trim)
+            .collect::<Vec<_>>()
+            .split(|l| !comments(&l))
+        {
+            let block = block.join("\n");
+            for (key, address) in &addresses {
+                let Some(address) = address else { continue };
+                assert!(
+                    !block.contains(&format!("`{key}`")),
+                    "{} cites {key} without a link",
+                    path.display()
+                );
+                if block.contains(&format!("[{key}]")) {
+                    assert!(
+                        block.contains(&format!("[{key}]: {address}")),
+                        "{} does not lead from {key} to {address}",
+                        path.display()
+                    );
+                    n += 1;
+                }
+            }
+        }
+    }
+    assert!(n > 30, "only {n} links");
+}
+
 /// Every page with a program in Rust is among the documentation tests of this crate.
 #[test]
 fn docs_with_rust_are_compiled() {

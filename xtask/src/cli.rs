@@ -105,7 +105,7 @@ pub enum Command {
     Test(TestArgs),
     /// Everything that must pass before a change lands: fmt, clippy, docs, packages, tests.
     Ci,
-    /// Build the site of the documentation into target/site: tutorial, pages, Python API, with search.
+    /// Build the documentation: rustdoc with typeset equations into target/doc, and the site (tutorial, pages, Python API, search) into target/site.
     Docs,
     /// Run the benchmarks and print a table.
     #[command(after_help = "Examples:

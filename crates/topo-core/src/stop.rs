@@ -1,4 +1,4 @@
-//! Why a run ends, and how to ask it to.
+//! Why a run ends, and how to stop it.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -56,13 +56,13 @@ impl StopReason {
         }
     }
 
-    /// Whether the run ended as asked: at its time or by its condition.
+    /// Whether the run ended as requested: at its time or by its condition.
     pub fn is_success(&self) -> bool {
         matches!(self, Self::ReachedTime | Self::Condition(_))
     }
 }
 
-/// A token by which another thread (or a signal handler) asks runs to stop after their present step.
+/// A token by which another thread or a signal handler stops runs after their present step.
 #[derive(Clone, Debug, Default)]
 pub struct Interrupt(Arc<AtomicBool>);
 
@@ -72,12 +72,12 @@ impl Interrupt {
         Self::default()
     }
 
-    /// Asks all holders of this token to stop.
+    /// Requests all holders of this token to stop.
     pub fn request(&self) {
         self.0.store(true, Ordering::Relaxed);
     }
 
-    /// Whether someone asked.
+    /// Whether a stop was requested.
     pub fn is_requested(&self) -> bool {
         self.0.load(Ordering::Relaxed)
     }

@@ -13,9 +13,9 @@ pub struct RodMaterial {
     pub bending_modulus: f64,
     /// Internal viscosity eta, in pascal seconds.
     pub viscosity: f64,
-    /// Twisting over bending modulus, alpha.
+    /// Twisting over bending modulus, alpha: no unit.
     pub twist_ratio: f64,
-    /// Stretching over bending modulus, gamma; below its true value, to soften what hardly stretches anyway.
+    /// Stretching over bending modulus, gamma: no unit. Chosen below its true value, as a fibre hardly stretches anyway.
     pub stretch_ratio: f64,
 }
 
@@ -29,7 +29,7 @@ pub const SILICONE: RodMaterial = RodMaterial {
 
 /// The reduced units of a rod: its radius h, its bending modulus E_b and its viscosity eta are 1.
 ///
-/// Times are then in eta/E_b. Energies inside the code are divided by the cross section A = pi h^2, thus in E_b h.
+/// Times are then in eta/E_b. Energies inside the code are divided by the cross section A = pi h^2, so they are in E_b h.
 ///
 /// # Validation
 /// `silicone_fibre_in_si_units`, `there_and_back_again`
@@ -82,32 +82,32 @@ impl RodUnits {
         Self::new(radius, material.bending_modulus, material.viscosity)
     }
 
-    /// Seconds in a reduced time: eta/E_b each.
+    /// A reduced `time` (in eta/E_b) in seconds.
     pub fn time_to_seconds(&self, time: f64) -> f64 {
         time * (self.viscosity / self.bending_modulus)
     }
 
-    /// Reduced time in seconds.
+    /// `seconds` as a reduced time (in eta/E_b).
     pub fn seconds_to_time(&self, seconds: f64) -> f64 {
         seconds / self.time_to_seconds(1.0)
     }
 
-    /// Metres in a reduced length: h each.
+    /// A reduced `length` (in h) in metres.
     pub fn length_to_metres(&self, length: f64) -> f64 {
         length * self.radius
     }
 
-    /// Reduced length in metres.
+    /// `metres` as a reduced length (in h).
     pub fn metres_to_length(&self, metres: f64) -> f64 {
         metres / self.radius
     }
 
-    /// Joules in a reduced energy *per cross section*: pi E_b h^3 each.
+    /// A reduced `energy` per cross section (in E_b h) in joules: it counts pi E_b h^3.
     pub fn energy_to_joules(&self, energy: f64) -> f64 {
         energy * (PI * self.bending_modulus * self.radius.powi(3))
     }
 
-    /// Reduced energy per cross section in joules.
+    /// `joules` as a reduced energy per cross section (in E_b h).
     pub fn joules_to_energy(&self, joules: f64) -> f64 {
         joules / self.energy_to_joules(1.0)
     }

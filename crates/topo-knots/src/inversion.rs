@@ -15,8 +15,8 @@ const MOST_COMPARED: usize = 12;
 /// A longer curve has strands too thin for its vertices, and would take long to tighten.
 const LONGEST: f64 = 500.0;
 
-/// Inverts a closed curve in a sphere around a random point between its strands; `None` if no point gives a curve of fair
-/// thickness.
+/// Inverts a closed curve in a sphere around a random point between its strands; `None` if no point gives a curve that is thick
+/// enough.
 ///
 /// ```math
 /// x \mapsto S \frac{x - p}{|x - p|^2}, \qquad S = \mathrm{diag}(1, 1, -1)

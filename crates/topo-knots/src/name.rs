@@ -1,4 +1,4 @@
-//! Names of knots and of their sums: factors joined by `#`, each with a leading `m` of its own where it is a mirror image.
+//! Names of knots and of their sums: factors joined by `#`, each with a leading `m` where it is a mirror image.
 
 use std::cmp::Ordering;
 use std::fmt;
@@ -11,7 +11,9 @@ pub(crate) const UNKNOT: &str = "0_1";
 /// The prime knots of at most ten crossings that equal their mirror image.
 ///
 /// # References
-/// `livingston2026`
+/// [livingston2026]
+///
+/// [livingston2026]: https://knotinfo.org
 pub(crate) const AMPHICHIRAL: [&str; 20] = [
     "4_1", "6_3", "8_3", "8_9", "8_12", "8_17", "8_18", "10_17", "10_33", "10_37", "10_43",
     "10_45", "10_79", "10_81", "10_88", "10_99", "10_109", "10_115", "10_118", "10_123",
@@ -66,8 +68,8 @@ impl Ord for Factor {
 
 /// Name of a knot or of a sum of knots, such as `m3_1#5_2`: the left-handed trefoil and 5_2 of the table.
 ///
-/// Each factor has its own `m`; factors stand in the order of the table, and one that equals its mirror image bears no `m`. So every
-/// type has one name, and that of the mirror image of `3_1#4_1` is `m3_1#4_1`.
+/// Each factor has its own `m`; factors are in the order of the table, and one that equals its mirror image has no `m`. So
+/// every type has one name, and that of the mirror image of `3_1#4_1` is `m3_1#4_1`.
 ///
 /// # Validation
 /// `sums_have_one_name_each`
@@ -83,7 +85,7 @@ impl KnotName {
         Self::parse_with(text, &is_amphichiral)
     }
 
-    /// The same with another knowledge of what equals its mirror image.
+    /// The same, with a function that says which knots equal their mirror image.
     pub(crate) fn parse_with(text: &str, is_amphichiral: &dyn Fn(&str) -> bool) -> Self {
         let factor = |text: &str| {
             let (knot, mirrored) = match text.strip_prefix('m') {
@@ -127,7 +129,7 @@ impl KnotName {
         self.mirror_with(&is_amphichiral)
     }
 
-    /// The same with another knowledge of what equals its mirror image.
+    /// The same, with a function that says which knots equal their mirror image.
     #[must_use]
     pub(crate) fn mirror_with(&self, is_amphichiral: &dyn Fn(&str) -> bool) -> Self {
         let turned = |factor: &Factor| Factor {
@@ -137,7 +139,7 @@ impl KnotName {
         Self::of(self.factors.iter().map(turned).collect())
     }
 
-    /// The name, or that of the mirror image, whichever stands first.
+    /// The name, or that of the mirror image, whichever comes first.
     #[must_use]
     pub fn unsided(&self) -> Self {
         self.clone().min(self.mirror())

@@ -15,7 +15,7 @@ const LARGEST_CHARGE: i32 = 10_000;
 /// F_s = \tfrac{W}{2} \int |Q - Q_s|^2\, dA
 /// ```
 ///
-/// Strong anchoring is the limit of large W, a free surface that of W = 0.
+/// Q_s is the tensor that the surface prefers. Strong anchoring is the limit of large W, a free surface that of W = 0.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Anchoring {
@@ -62,7 +62,7 @@ pub struct DirectorTable {
     pub n_polar: usize,
     /// Azimuths, at least 1: the first is 0.
     pub n_azimuth: usize,
-    /// n_polar times n_azimuth directors; their lengths and signs do not matter.
+    /// n_polar times n_azimuth directors; any length but zero, either sign.
     pub directors: Vec<[f64; 3]>,
 }
 
@@ -108,6 +108,13 @@ impl DirectorTable {
 }
 
 /// The director that a particle's surface prefers.
+///
+/// ```math
+/// n_q = (\sin\theta \cos q\varphi,\ \sin\theta \sin q\varphi,\ \cos\theta), \qquad
+/// n_{\text{homeotropic}} = \nu, \qquad n_{\text{planar}} = \frac{a - (a \cdot \nu)\, \nu}{|a - (a \cdot \nu)\, \nu|}
+/// ```
+///
+/// θ and φ are the polar angle and the azimuth of the point of the sphere, ν is the normal there, a the axis.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
@@ -157,7 +164,7 @@ impl SurfacePattern {
         Ok(())
     }
 
-    /// Turns of the pattern along the equator.
+    /// Number of turns of the pattern along the equator.
     pub fn charge(&self) -> Option<i32> {
         match self {
             Self::Winding(q) => Some(*q),
@@ -222,7 +229,7 @@ pub enum PlateDirector {
 pub struct Plate {
     /// Preferred director.
     pub director: PlateDirector,
-    /// Strength.
+    /// Strength of the anchoring.
     pub anchoring: Anchoring,
 }
 
@@ -261,7 +268,7 @@ impl Plate {
     }
 }
 
-/// Passes a vector that has a direction.
+/// Returns a vector if it has a direction.
 pub(crate) fn unit(name: &str, v: [f64; 3]) -> Result<[f64; 3], NematicError> {
     for x in v {
         finite(name, x)?;

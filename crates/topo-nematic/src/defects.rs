@@ -65,7 +65,9 @@ type Square = (usize, usize);
 /// `straight_lines_have_their_cross_sections`
 ///
 /// # References
-/// `schimming2022`
+/// [schimming2022]
+///
+/// [schimming2022]: https://doi.org/10.1039/D1SM01584B
 pub fn defect_lines(state: &NematicState) -> Vec<DefectLine> {
     let tracer = Tracer::new(state);
     let mut squares = tracer.pierced_squares();

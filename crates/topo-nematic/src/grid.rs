@@ -1,9 +1,9 @@
-//! The grid: cells, spacing, and what lies beyond each pair of outer faces.
+//! The grid: cells, spacing, and what is beyond each pair of outer faces.
 
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-/// What lies beyond a pair of opposite outer faces.
+/// What is beyond a pair of opposite outer faces.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Faces {
@@ -38,7 +38,7 @@ impl TryFrom<Unchecked> for Grid {
     }
 }
 
-/// Why a grid cannot be.
+/// Why a grid is invalid.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum GridError {
@@ -50,10 +50,10 @@ pub enum GridError {
         /// Cells along it.
         cells: usize,
     },
-    /// Not a length.
+    /// The spacing is not a length.
     #[error("the grid spacing must be positive and finite, but is {spacing}")]
     Spacing {
-        /// The value given.
+        /// The value given, in xi_N.
         spacing: f64,
     },
     /// More cells than can be counted or held.
@@ -115,7 +115,7 @@ impl Grid {
         self.spacing
     }
 
-    /// What lies beyond the faces along x, y, z.
+    /// What is beyond the outer faces along x, y, z.
     pub fn faces(&self) -> [Faces; 3] {
         self.faces
     }

@@ -13,10 +13,14 @@ use crate::tensor::{Tensor5, contract, square_traceless};
 ///   + \tfrac{L}{2} (\partial_k Q_{ij})^2 + \tfrac{L_2}{2} (\partial_j Q_{ij})^2
 /// ```
 ///
-/// The defaults are those of `patil2020discharging`; its viscosity is 1.38/Gamma, the printed unit being inverted.
+/// The defaults are those of [patil2020discharging]; its viscosity is 1.38/Gamma, since the printed unit is inverted. Q is the
+/// order tensor.
 ///
 /// # References
-/// `patil2020discharging`, `beris1994`
+/// [patil2020discharging], [beris1994]
+///
+/// [patil2020discharging]: https://doi.org/10.1103/PhysRevResearch.2.043196
+/// [beris1994]: https://doi.org/10.1093/oso/9780195076943.001.0001
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Material {
@@ -31,13 +35,13 @@ pub struct Material {
     /// Second elastic constant L_2, in L; leave it out and no term is modelled.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub second_elastic_constant: Option<f64>,
-    /// Rotational mobility Gamma, of dQ/dt = Gamma H: 1 in reduced units (called the rotational viscosity parameter by `patil2020discharging`).
+    /// Rotational mobility Gamma, of dQ/dt = Gamma H: 1 in reduced units. In the original paper: "rotational viscosity parameter".
     pub rotational_mobility: f64,
     /// Flow alignment chi: no unit.
     pub flow_alignment: f64,
     /// Isotropic viscosity eta, in 1/Gamma.
     pub viscosity: f64,
-    /// Order S at surfaces and of start fields; the equilibrium order when left out.
+    /// Order S at surfaces and of start fields: no unit; the equilibrium order when left out.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub surface_order: Option<f64>,
 }
@@ -59,11 +63,11 @@ impl Default for Material {
 }
 
 impl Material {
-    /// The material, if its constants make sense.
+    /// The material, if its constants are valid.
     ///
     /// # Errors
     /// A constant that is not finite or has the wrong sign; B² < 24 A C without a surface order; an elastic energy that is not
-    /// positive definite (L_2 <= -3 L/5).
+    /// positive definite (L_2 ≤ −3 L/5).
     pub fn checked(self) -> Result<Self, NematicError> {
         finite("material.a", self.a)?;
         finite("material.b", self.b)?;
@@ -102,7 +106,7 @@ impl Material {
     /// Order S_eq of the uniform nematic, if there is a positive one.
     ///
     /// ```math
-    /// S_{eq} = \frac{-B + \sqrt{B^2 - 24 A C}}{6 C}
+    /// S_{\mathrm{eq}} = \frac{-B + \sqrt{B^2 - 24 A C}}{6 C}
     /// ```
     pub fn equilibrium_order(&self) -> Option<f64> {
         let discriminant = self.b * self.b - 24.0 * self.a * self.c;
@@ -118,13 +122,13 @@ impl Material {
             .unwrap_or(0.0)
     }
 
-    /// Bulk energy density of a uniaxial nematic of order `order`.
+    /// Bulk energy density of a uniaxial nematic of order `order`, in L/xi_N².
     pub fn uniaxial_density(&self, order: f64) -> f64 {
         let s2 = order * order;
         0.75 * self.a * s2 + 0.25 * self.b * s2 * order + 0.5625 * self.c * s2 * s2
     }
 
-    /// Bulk energy density of the uniform equilibrium, which energies are counted from; 0 without a nematic phase.
+    /// Bulk energy density of the uniform equilibrium, from which energies count, in L/xi_N²; 0 without a nematic phase.
     pub fn reference_density(&self) -> f64 {
         self.equilibrium_order()
             .map_or(0.0, |order| self.uniaxial_density(order))
@@ -135,17 +139,17 @@ impl Material {
         self.reference_density() > 0.0
     }
 
-    /// Bulk energy density of Q above the reference.
+    /// Bulk energy density of Q above the reference, in L/xi_N².
     pub fn bulk_density(&self, q: &Tensor5) -> f64 {
         let t = contract(q, q);
         let cube = contract(&square_traceless(q), q);
         0.5 * self.a * t + self.b / 3.0 * cube + 0.25 * self.c * t * t - self.reference_density()
     }
 
-    /// Bulk part of the molecular field, -(df/dQ) made traceless.
+    /// Bulk part of the molecular field, −∂f/∂Q made traceless, in L/xi_N².
     ///
     /// ```math
-    /// H = -A Q - B\,(Q^2)_{tr} - C\,(Q:Q)\,Q
+    /// H = -A Q - B\,(Q^2)_{\mathrm{tr}} - C\,(Q:Q)\,Q
     /// ```
     pub fn bulk_field(&self, q: &Tensor5) -> Tensor5 {
         let square = square_traceless(q);
@@ -156,7 +160,7 @@ impl Material {
     /// Rate at which a uniform nematic returns to the equilibrium order, over Gamma; also L/xi_N².
     ///
     /// ```math
-    /// A + B S_{eq} + \tfrac92 C S_{eq}^2
+    /// A + B S_{\mathrm{eq}} + \tfrac92 C S_{\mathrm{eq}}^2
     /// ```
     pub fn order_stiffness(&self) -> f64 {
         let s = self.order();
@@ -187,7 +191,7 @@ impl Material {
         2.0 * a * a / (self.viscosity * self.rotational_mobility)
     }
 
-    /// Frank's elastic constant of the director, K = (9/2) L S².
+    /// Frank's elastic constant of the director, K = (9/2) L S², in L.
     pub fn frank_constant(&self) -> f64 {
         4.5 * self.elastic_constant * self.order().powi(2)
     }

@@ -1,4 +1,4 @@
-//! What a scene says of a nematic battery: sizes, surfaces, material, and the accuracy asked for.
+//! The parameters of a nematic battery in a scene: sizes, surfaces, material, and the accuracy.
 
 use serde::{Deserialize, Serialize};
 use topo_core::{InvalidValue, finite, in_range, positive};
@@ -20,12 +20,12 @@ use crate::{Faces, Grid, Material, NematicError};
 pub struct ExternalField {
     /// E, in the unit that makes chi_a E² an energy density in L/xi_N².
     pub vector: [f64; 3],
-    /// Anisotropy chi_a: positive aligns the director with E.
+    /// Anisotropy chi_a: no unit. A positive one aligns the director with E.
     pub anisotropy: f64,
 }
 
 impl ExternalField {
-    /// Molecular field of the external field, -(df/dQ) made traceless.
+    /// Molecular field of the external field, −∂f/∂Q made traceless, in L/xi_N².
     pub fn molecular_field(&self) -> Tensor5 {
         let square = self.vector.iter().map(|e| e * e).sum::<f64>();
         if square == 0.0 {
@@ -38,7 +38,7 @@ impl ExternalField {
     }
 }
 
-/// What lies at the sides of the cell.
+/// What is at the sides of the cell.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Sides {
@@ -66,15 +66,15 @@ pub struct NematicParameters {
     pub particle: bool,
     /// What its surface prefers while charged.
     pub pattern: SurfacePattern,
-    /// How strongly.
+    /// Strength of that anchoring.
     pub anchoring: Anchoring,
-    /// How that is put on the grid.
+    /// How the anchored surface is represented on the grid.
     pub boundary: Boundary,
     /// The plates below and above.
     pub plates: Plate,
     /// The sides.
     pub sides: Sides,
-    /// No plates: what lies above is what lies below. Only with plates as they are by default, and periodic sides.
+    /// No plates: periodic along z too. Only with default plates and periodic sides.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub periodic: bool,
     /// The material.
@@ -110,7 +110,7 @@ const COARSEST: f64 = 2.5;
 const FINEST_PATTERN: f64 = 8.0;
 
 impl NematicParameters {
-    /// The parameters, if they make sense.
+    /// The parameters, if they are valid.
     ///
     /// # Errors
     /// A value out of range, or a spacing above 2.5 correlation lengths.
@@ -183,7 +183,7 @@ impl NematicParameters {
         Ok(Grid::new(cells, spacing, [sides, sides, plates])?)
     }
 
-    /// What is unusual, though possible.
+    /// What is unusual, although valid.
     pub(crate) fn warnings(&self, grid: &Grid) -> Vec<String> {
         let mut warnings = Vec::new();
         if self.material.is_metastable() {
@@ -222,7 +222,7 @@ impl NematicParameters {
     }
 }
 
-/// How accurately a discharge is followed, and with which means.
+/// Accuracy of a discharge, storage and threads.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct NematicAccuracy {
@@ -234,7 +234,7 @@ pub struct NematicAccuracy {
     pub threads: Threads,
     /// Limit of trial steps.
     pub max_steps: u64,
-    /// Refuse a run whose estimate exceeds this many bytes.
+    /// Largest memory estimate of a run that is accepted, in bytes.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub memory_limit: Option<u64>,
 }
@@ -252,10 +252,10 @@ impl Default for NematicAccuracy {
 }
 
 impl NematicAccuracy {
-    /// The accuracy, if it makes sense.
+    /// The accuracy, if it is valid.
     ///
     /// # Errors
-    /// A tolerance outside 1e-9..0.1, or no steps.
+    /// A tolerance outside 1e-9..0.1, or a limit of 0 steps.
     pub fn checked(self) -> Result<Self, NematicError> {
         in_range("accuracy.tolerance", self.tolerance, 1e-9, 0.1)?;
         in_range("accuracy.max_steps", self.max_steps as f64, 1.0, 1e15)?;

@@ -1,4 +1,4 @@
-//! What holds, moves or loads the ends of an open rod.
+//! How the ends of an open rod are held, moved and loaded.
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
@@ -32,7 +32,7 @@ pub struct EndMotion {
     pub torque: f64,
 }
 
-/// Both ends of an open rod. The default, free and unloaded, costs nothing.
+/// Both ends of an open rod. The default is free and unloaded, at no cost.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Ends {
@@ -43,7 +43,7 @@ pub struct Ends {
 }
 
 impl Ends {
-    /// Checks that loads act on what is free and motions on what is held, and that forces on a free rod balance.
+    /// Checks that loads act on free ends and motions on held ends, and that the forces on a free rod balance.
     ///
     /// # Errors
     /// Names the contradiction.
@@ -105,7 +105,7 @@ impl Ends {
         self.motions != [EndMotion::default(); 2]
     }
 
-    /// Vertices that are held, each with the velocity it is given.
+    /// Vertices that are held, each with its prescribed velocity, in h E_b/η.
     pub fn held_vertices(&self, state: &RodState) -> Vec<(usize, Vector3<f64>)> {
         let last = state.n_vertices() - 1;
         let mut held = Vec::new();
@@ -124,7 +124,7 @@ impl Ends {
         held
     }
 
-    /// Edges whose rotation is held, each with its rate.
+    /// Edges whose rotation is held, each with its prescribed rate, in E_b/η.
     pub fn held_edges(&self, state: &RodState) -> Vec<(usize, f64)> {
         [(0, 0), (1, state.n_edges() - 1)]
             .into_iter()

@@ -1,6 +1,7 @@
 //! `cargo xtask determinism`: the same numbers from one thread, from two, and from runs killed at random moments.
 
 use crate::cli::DeterminismArgs;
+use crate::workspace::at;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use std::path::{Path, PathBuf};
@@ -128,14 +129,6 @@ fn torn(
     }
     finish(&words)?;
     Ok(n_kills)
-}
-
-fn at(path: &Path) -> impl Fn(std::io::Error) -> CliError {
-    let path: PathBuf = path.to_owned();
-    move |source| CliError::File {
-        path: path.clone(),
-        source,
-    }
 }
 
 #[cfg(test)]

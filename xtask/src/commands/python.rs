@@ -2,7 +2,7 @@
 
 use super::cargo::step;
 use super::test::Counts;
-use crate::workspace::workspace;
+use crate::workspace::{at, workspace};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use topo_cli::CliError;
@@ -131,14 +131,6 @@ fn n_tests(folder: &Path) -> Result<usize, CliError> {
         }
     }
     Ok(n)
-}
-
-fn at(path: &Path) -> impl Fn(std::io::Error) -> CliError {
-    let path = path.to_owned();
-    move |source| CliError::File {
-        path: path.clone(),
-        source,
-    }
 }
 
 #[cfg(test)]

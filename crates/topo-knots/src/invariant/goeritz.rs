@@ -9,7 +9,9 @@ use super::diagram::Diagram;
 /// ```
 ///
 /// # References
-/// `gordon1978`
+/// [gordon1978]
+///
+/// [gordon1978]: https://doi.org/10.1007/BF01609479
 pub(super) fn determinant_and_signature(diagram: &Diagram) -> Option<(u64, i32)> {
     if diagram.n_crossings() < 3 {
         return Some((1, 0));

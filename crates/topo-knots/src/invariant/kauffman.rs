@@ -52,7 +52,9 @@ static POINT: LazyLock<Point> =
 /// `kauffman_polynomials_as_published`, `at_a_line_of_points_it_is_the_jones_polynomial`.
 ///
 /// # References
-/// `kauffman1990`
+/// [kauffman1990]
+///
+/// [kauffman1990]: https://doi.org/10.1090/S0002-9947-1990-0958895-7
 pub(crate) fn kauffman(diagram: &Diagram) -> Option<u64> {
     at(diagram, &POINT)
 }

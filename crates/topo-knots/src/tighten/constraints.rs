@@ -37,7 +37,7 @@ impl Row {
         }
     }
 
-    /// Rate of change of the guarded quantity under displacements `y` (three numbers a vertex).
+    /// Rate of change of the guarded quantity under displacements `y` (three numbers per vertex).
     pub fn dot(&self, y: &[f64]) -> f64 {
         (0..self.n())
             .map(|k| {

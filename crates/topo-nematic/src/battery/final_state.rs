@@ -56,7 +56,7 @@ impl SwitchedNematic {
 
     /// Energy that can be released on the way to `end`, in L xi_N; none if it is not above what a converged charge leaves.
     ///
-    /// Negative if the final state lies above the present one, as a ramp of the anchoring can do.
+    /// Negative if the energy of the final state is above the present one, as can happen with a ramp of the anchoring.
     pub fn stored(&self, end: &FinalState) -> Option<f64> {
         Some(self.start() - end.energy)
             .filter(|stored| stored.abs() > nothing(&self.charged.battery))

@@ -13,13 +13,13 @@ pub struct MinimumReport {
     /// Lowest eigenvalue of the Hessian of the energy in the inner product of the gradient flow, in L/xi_N²: a small change along
     /// its mode decays at Gamma times this.
     pub lowest_eigenvalue: f64,
-    /// Norm of what its mode misses of being one, in L/xi_N².
+    /// Norm of the residual A v − λ v of its mode v, in L/xi_N².
     pub residual: f64,
-    /// What it says.
+    /// What the eigenvalue means for the state.
     pub state: MinimumState,
     /// Kicks along unstable modes, each followed by a relaxation.
     pub n_kicks: u32,
-    /// Products with the Hessian, each as dear as a step of the relaxation, over all checks.
+    /// Products with the Hessian over all checks, each as expensive as a step of the relaxation.
     pub n_products: u64,
 }
 
@@ -40,7 +40,7 @@ fn state_of(eigenvalue: f64, unit: f64) -> MinimumState {
     }
 }
 
-/// A state that was looked at.
+/// A state that was checked.
 pub(super) struct Check<'a> {
     hessian: Hessian<'a>,
     kernel: &'a Kernel<f64>,

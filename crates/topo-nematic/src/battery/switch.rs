@@ -21,9 +21,9 @@ use crate::{NematicError, NematicParameters, NematicState, Particle};
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum SwitchTarget {
-    /// Nothing: the director may take any orientation.
+    /// It prefers nothing: the director may take any orientation.
     Free(FreeSurface),
-    /// What it did before: the nematic goes on as it is.
+    /// It keeps its pattern: the nematic stays as it is.
     Keep,
     /// It prefers another pattern.
     Pattern {
@@ -44,9 +44,9 @@ impl Default for SwitchTarget {
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct SwitchSettings {
-    /// What to.
+    /// What the surface is switched to.
     pub to: SwitchTarget,
-    /// Over which time, in tau_N; at once when left out.
+    /// Duration of the switch, in tau_N; at once when left out.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ramp: Option<f64>,
 }
@@ -73,7 +73,7 @@ impl SwitchSettings {
     }
 }
 
-/// A battery whose anchoring has just been switched, with the account of what the switch took.
+/// A battery whose anchoring has just been switched, with the energy that the switch removed.
 #[derive(Debug, Clone)]
 pub struct SwitchedNematic {
     pub(crate) charged: ChargedNematic,
@@ -86,8 +86,8 @@ pub struct SwitchedNematic {
 impl ChargedNematic {
     /// Switches the anchoring.
     ///
-    /// A free surface keeps the values that the pattern had given it, as start values of the cells that the sphere cuts; how steeply
-    /// they go on inside is set so that the energy does not jump, as far as that is possible.
+    /// A free surface keeps the values that the pattern had given it, as start values of the cells that the sphere cuts; their
+    /// slope inside is chosen so that the energy does not jump, as far as that is possible.
     ///
     /// # Errors
     /// A broken pattern or ramp; a battery without a particle.
@@ -177,7 +177,7 @@ impl SwitchedNematic {
         self.start
     }
 
-    /// Energy that the switch itself removed, in L xi_N; negative if it brought some.
+    /// Energy that the switch itself removed, in L xi_N; negative if it added energy.
     pub fn removed(&self) -> f64 {
         self.charged.energy().total() - self.start
     }

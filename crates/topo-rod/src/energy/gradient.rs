@@ -1,4 +1,4 @@
-//! The check that every term must pass.
+//! The check of forces that every term must pass.
 
 use topo_core::{finite_difference_gradient, max_norm};
 

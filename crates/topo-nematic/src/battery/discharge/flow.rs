@@ -13,7 +13,7 @@ use crate::stabilised::{Drift, DriftMemory, Stabilised};
 use crate::stokes::StokesError;
 use crate::{FlowParameters, NematicError};
 
-/// The flow of a discharge and what is remembered of it.
+/// The flow of a discharge and its memory.
 ///
 /// After a refused step the velocity is that of the refused trial: only what [`settle`](Self::settle) kept counts.
 pub(super) struct CoupledFlow {
@@ -70,7 +70,7 @@ impl CoupledFlow {
         }
     }
 
-    /// Finds the velocity at the present field, or goes on from a memory.
+    /// Computes the velocity at the present field, or continues from a memory.
     ///
     /// # Errors
     /// Why no velocity was found.
