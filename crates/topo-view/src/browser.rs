@@ -21,7 +21,9 @@ impl Browser {
     /// The browser of this machine; panics where there is none.
     pub fn start() -> Self {
         Self {
-            program: Outside::Browser.find().expect(Outside::Browser.needs()),
+            program: Outside::Browser
+                .find()
+                .unwrap_or_else(|| panic!("{}", Outside::Browser.needs())),
             folder: tempfile::tempdir().unwrap(),
         }
     }
