@@ -70,7 +70,9 @@ addEventListener('load', async () => {
 #[test]
 #[ignore = "needs Chromium: `cargo xtask test` runs it where there is one"]
 fn browser_every_equation_of_the_docs_is_typeset() {
-    let browser = Outside::Browser.find().expect(Outside::Browser.needs());
+    let browser = Outside::Browser
+        .find()
+        .unwrap_or_else(|| panic!("{}", Outside::Browser.needs()));
     let equations = all_equations();
     let dir = tempfile::tempdir().unwrap();
     let assets = root().join("xtask/rustdoc");

@@ -12,7 +12,8 @@ use topo_nematic::record::NematicSample;
 use topo_nematic::ring::ring_line;
 use topo_nematic::{
     ChargeSettings, ChargedNematic, DischargeSettings, EnergyParts, FlowParameters,
-    NematicAccuracy, NematicBattery, NematicParameters, NematicState, SwitchSettings, Threads,
+    NematicAccuracy, NematicBattery, NematicParameters, NematicState, RunHooks, SwitchSettings,
+    Threads,
 };
 
 use crate::attend::{Checkpoint, Leave, Reporter, attend, hooks};
@@ -106,7 +107,7 @@ impl ColloidBattery {
         let (token, wants) = (interrupt.clone(), observer.is_some());
         let work = move |reporter: &Reporter<Notice, ChargedNematic>| {
             let mut see = |p: &Progress| reporter.report(Notice::Progress(*p));
-            let hooks = hooks(&token, &checkpoint);
+            let hooks: RunHooks<'_> = hooks(&token, &checkpoint);
             let mut hooks = if wants {
                 hooks.with_progress(&mut see)
             } else {
@@ -214,7 +215,8 @@ impl SwitchedColloid {
                 }
                 rings.extend(line.map(|line| (s.time, line)));
             };
-            let mut hooks = hooks(&token, &checkpoint).with_samples(&mut see);
+            let hooks: RunHooks<'_> = hooks(&token, &checkpoint);
+            let mut hooks = hooks.with_samples(&mut see);
             let run = switched.discharge(&settings, &mut hooks)?;
             Ok((run, rings))
         };

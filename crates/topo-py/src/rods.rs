@@ -211,7 +211,7 @@ fn phase<T: Send + 'static>(
     };
     let work = move |reporter: &Reporter<Box<RodSample>, T>| {
         let mut see = |s: &RodSample| reporter.report(Box::new(s.clone()));
-        let hooks = hooks(&token, &checkpoint);
+        let hooks: RunHooks<'_> = hooks(&token, &checkpoint);
         let mut hooks = if wants {
             hooks.with_samples(&mut see)
         } else {

@@ -32,7 +32,7 @@ pub struct Place<'a> {
     pub is_alone: bool,
     /// Processor seconds that it is expected to take on the models' machine.
     pub expected: f64,
-    /// Told where it is.
+    /// Called with what it does.
     pub progress: &'a (dyn Fn(Event<'_>) + Sync),
 }
 
