@@ -238,8 +238,11 @@ fn seen<'py>(py: Python<'py>, phase: &str, s: &RodSample) -> PyResult<Bound<'py,
     Ok(dict)
 }
 
-/// Numbers of a sample besides its time.
-const COLUMNS: [(&str, fn(&RodSample) -> f64); 6] = [
+/// A number of a sample, by its name.
+type Column = (&'static str, fn(&RodSample) -> f64);
+
+/// Those besides its time.
+const COLUMNS: [Column; 6] = [
     ("energy", RodSample::elastic),
     ("writhe", |s| s.writhe),
     ("total_twist", |s| s.total_twist),
