@@ -120,6 +120,7 @@ impl DirectorTable {
 #[non_exhaustive]
 pub enum SurfacePattern {
     /// n_q = (sin θ cos qφ, sin θ sin qφ, cos θ), of effective charge q.
+    #[serde(rename = "charge")]
     Winding(i32),
     /// Along the surface normal.
     Homeotropic,
