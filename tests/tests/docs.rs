@@ -380,7 +380,9 @@ fn page_of(equations: &[(PathBuf, String)], folder: &Path) -> PathBuf {
 #[test]
 #[ignore = "needs Chromium: `cargo xtask test` runs it where there is one"]
 fn browser_every_equation_of_the_docs_is_typeset() {
-    let browser = Outside::Browser.find().expect(Outside::Browser.needs());
+    let browser = Outside::Browser
+        .find()
+        .unwrap_or_else(|| panic!("{}", Outside::Browser.needs()));
     let dir = tempfile::tempdir().unwrap();
     let equations = equations();
     let page = page_of(&equations, dir.path());

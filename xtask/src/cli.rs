@@ -93,7 +93,7 @@ pub enum Command {
   cargo xtask determinism                           all that the draft figures draw: three times some minutes
   cargo xtask determinism scenes/elastic-quick.toml    a scene instead")]
     Determinism(DeterminismArgs),
-    /// Feed every parser with made-up files: needs cargo-fuzz.
+    /// Feed every parser with generated files: needs cargo-fuzz.
     #[command(after_help = "Examples:
   cargo xtask fuzz                        ten minutes for each parser
   cargo xtask fuzz --minutes 60 vect xyz  an hour for each of two")]

@@ -107,6 +107,10 @@ impl Experiment for NematicScene {
         print::HEADER.to_owned()
     }
 
+    fn legend(&self) -> &'static [&'static str] {
+        print::LEGEND
+    }
+
     fn line(&self, row: &NematicRow) -> String {
         print::line(row)
     }

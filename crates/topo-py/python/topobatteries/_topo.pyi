@@ -26,7 +26,7 @@ class RodBattery:
     ropelength: float
     tube: list[float]
     points: _Array
-    def charge(self, given: dict) -> ChargedRod: ...
+    def charge(self, given: dict, observer: Callable | None, checkpoint: tuple[str, float] | None) -> ChargedRod: ...
 
 class ChargedRod:
     points: _Array
@@ -39,7 +39,7 @@ class ChargedRod:
 class CutRod:
     at: float
     points: _Array
-    def discharge(self, given: dict) -> dict[str, Any]: ...
+    def discharge(self, given: dict, observer: Callable | None, checkpoint: tuple[str, float] | None) -> dict[str, Any]: ...
 
 class ColloidBattery:
     def __new__(cls, nematic: dict, accuracy: dict) -> ColloidBattery: ...

@@ -1,4 +1,4 @@
-//! Every figure drawn from made-up results.
+//! Every figure drawn from artificial results.
 
 use super::*;
 use crate::{gallery, provenance, reproduction, scenes, synthetic};
@@ -154,7 +154,7 @@ fn missing_results_and_unknown_names_are_reported() {
     assert_eq!((figures.len(), movies.len()), (0, 1));
 }
 
-/// Draws made-up results at full detail into the folder that `TOPO_LOOK` names.
+/// Draws artificial results at full detail into the folder that `TOPO_LOOK` names.
 #[test]
 #[ignore = "for looking at, not for checking"]
 fn look() {

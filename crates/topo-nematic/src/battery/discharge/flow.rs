@@ -83,7 +83,7 @@ impl CoupledFlow {
         field.forget_earlier_drift();
         let mut is_known = false;
         if let Some(memory) = memory {
-            // A checkpoint of this very case fits; were it not so, the flow would start anew.
+            // A checkpoint of this very case fits; were it not so, the flow would start again.
             is_known = self.coupling.restore(memory.coupling);
             self.max_speed = memory.max_speed;
             self.boundary_residual = memory.boundary_residual;
