@@ -67,7 +67,7 @@ impl<'de> Deserialize<'de> for Further {
     }
 }
 
-/// The table with a column for each name in its column `further`; as it is without that column.
+/// The table with a column for each name in its column `further`; unchanged without that column.
 ///
 /// A name that the table has already gets `_energy` behind it, as that of the twist has.
 pub(crate) fn expanded(table: Vec<u8>) -> csv::Result<Vec<u8>> {

@@ -35,7 +35,7 @@ pub trait Advance {
     fn error_order(&self) -> u32;
 }
 
-/// The length `dt`, or less so that two equal steps end what is left, rather than a long one and a sliver.
+/// The length `dt`, or less: near the end two equal steps are made rather than a long and a very short one.
 fn in_halves(dt: f64, remaining: f64) -> f64 {
     if dt >= remaining * (1.0 - 1e-9) {
         remaining
@@ -76,8 +76,8 @@ impl TimeStepping {
     /// A step that reaches `target` ends there to the bit. Refused steps are counted and followed by shorter ones.
     ///
     /// # Errors
-    /// The reason to stop, the state being the one before: the limit of trial steps, a step below the shortest one, or a failure
-    /// that no shorter step avoids.
+    /// The reason to stop, with the state before the step: the limit of trial steps, a step below the shortest one, or a
+    /// failure that no shorter step avoids.
     pub fn step_towards(
         &mut self,
         target: f64,
@@ -115,7 +115,7 @@ impl TimeStepping {
         }
     }
 
-    /// Counts a refused step of length `dt`; gives the length of the next one.
+    /// Counts a refused step of length `dt`; returns the length of the next one.
     fn refuse(&mut self, dt: f64, why: Rejection, error_order: u32) -> Result<f64, StopReason> {
         self.rejections.add(&why);
         if matches!(why, Rejection::Fatal { .. }) {

@@ -67,7 +67,7 @@ impl StopReason {
 pub struct Interrupt(Arc<AtomicBool>);
 
 impl Interrupt {
-    /// A token that nobody has used yet.
+    /// A token without a request to stop.
     pub fn new() -> Self {
         Self::default()
     }

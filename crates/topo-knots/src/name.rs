@@ -168,8 +168,8 @@ impl From<KnotName> for String {
     }
 }
 
-/// Name of the mirror image of a shape: a knot gains or loses its leading `m`, also one of which the mirror image is the same knot
-/// turned around, as `m4_1`; a sum follows [`KnotName`], as `m3_1#4_1` for `3_1#4_1`.
+/// Name of the mirror image of a shape. A knot gains or loses its leading `m`, even where the mirror image is the same knot
+/// turned around (`m4_1`). A sum follows [`KnotName`]: `m3_1#4_1` for `3_1#4_1`.
 pub fn mirror_name(name: &str) -> String {
     if name.contains('#') {
         return KnotName::parse(name).mirror().to_string();

@@ -22,7 +22,7 @@ pub enum Anchoring {
     /// Q = Q_s on the surface.
     #[default]
     Strong,
-    /// With the strength W, in L/xi_N.
+    /// With the strength W, in L/ξ_N.
     Weak(f64),
     /// No preference.
     Free,
@@ -54,11 +54,11 @@ impl Anchoring {
     }
 }
 
-/// Directors on a grid of polar angles (rows, from 0 to pi) and azimuths (columns, periodic), the azimuth running faster.
+/// Directors on a grid of polar angles (rows, from 0 to π) and azimuths (columns, periodic), the azimuth running faster.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DirectorTable {
-    /// Polar angles, at least 2: 0 and pi are the first and the last.
+    /// Polar angles, at least 2: 0 and π are the first and the last.
     pub n_polar: usize,
     /// Azimuths, at least 1: the first is 0.
     pub n_azimuth: usize,

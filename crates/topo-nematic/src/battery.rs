@@ -140,7 +140,7 @@ impl NematicBattery {
         estimate(&self.grid, self.accuracy.precision)
     }
 
-    /// Diffusion time R²/(Gamma L), in tau_N.
+    /// Diffusion time R²/(Γ L), in τ_N.
     pub fn diffusion_time(&self) -> f64 {
         let m = &self.parameters.material;
         self.parameters.radius.powi(2) / (m.rotational_mobility * m.elastic_constant)

@@ -10,7 +10,7 @@ use crate::real::Real;
 use crate::tensor::{Tensor5, contract};
 use crate::vector::dispatch;
 
-/// Free energy by part, all in L xi_N; the bulk part counts from the uniform equilibrium.
+/// Free energy by part, all in L ξ_N; the bulk part counts from the uniform equilibrium.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct EnergyParts {
     /// Distortion: L/2 (∂Q)² and the second elastic term.

@@ -20,11 +20,11 @@ pub enum NematicError {
         "A = {a}, B = {b}, C = {c} have no nematic phase (B^2 < 24 A C, or no positive order): change them, or give the surface order"
     )]
     NoNematicPhase {
-        /// A, in L/xi_N².
+        /// A, in L/ξ_N².
         a: f64,
-        /// B, in L/xi_N².
+        /// B, in L/ξ_N².
         b: f64,
-        /// C, in L/xi_N².
+        /// C, in L/ξ_N².
         c: f64,
     },
     /// The particle leaves no room to a wall or to its image.
@@ -34,11 +34,11 @@ pub enum NematicError {
     ParticleTooLarge {
         /// 0, 1, 2 for x, y, z.
         axis: usize,
-        /// Its radius, in xi_N.
+        /// Its radius, in ξ_N.
         radius: f64,
-        /// Length of the box along the axis, in xi_N.
+        /// Length of the box along the axis, in ξ_N.
         extent: f64,
-        /// What is left, in xi_N.
+        /// What is left, in ξ_N.
         gap: f64,
     },
     /// The particle is smaller than the grid can show.
@@ -46,9 +46,9 @@ pub enum NematicError {
         "a particle of radius {radius} is not resolved by a spacing of {spacing}: the radius must be at least two spacings"
     )]
     ParticleTooCoarse {
-        /// Its radius, in xi_N.
+        /// Its radius, in ξ_N.
         radius: f64,
-        /// The spacing, in xi_N.
+        /// The spacing, in ξ_N.
         spacing: f64,
     },
     /// The spacing does not resolve the core of a defect.
@@ -56,7 +56,7 @@ pub enum NematicError {
         "a spacing of {spacing} is too coarse for defect cores of size {correlation_length}: use at most {limit}"
     )]
     SpacingTooCoarse {
-        /// The spacing, in xi_N.
+        /// The spacing, in ξ_N.
         spacing: f64,
         /// Correlation length of the material, in the unit of the spacing.
         correlation_length: f64,

@@ -53,7 +53,7 @@ pub enum GridError {
     /// The spacing is not a length.
     #[error("the grid spacing must be positive and finite, but is {spacing}")]
     Spacing {
-        /// The value given, in xi_N.
+        /// The value given, in ξ_N.
         spacing: f64,
     },
     /// More cells than can be counted or held.
@@ -70,7 +70,7 @@ pub enum GridError {
 const MAX_CELLS: usize = 1 << 31;
 
 impl Grid {
-    /// A box of `cells` cubes of edge `spacing` (xi_N), with `faces` beyond its outer faces along x, y, z.
+    /// A box of `cells` cubes of edge `spacing` (ξ_N), with `faces` beyond its outer faces along x, y, z.
     ///
     /// # Errors
     /// [`GridError`] for fewer than 4 cells along an axis, more than 2^31 in all, or a spacing that is no length.
@@ -110,7 +110,7 @@ impl Grid {
         self.cells.iter().product()
     }
 
-    /// Edge h of a cell (xi_N).
+    /// Edge h of a cell (ξ_N).
     pub fn spacing(&self) -> f64 {
         self.spacing
     }
@@ -120,7 +120,7 @@ impl Grid {
         self.faces
     }
 
-    /// Edges of the box (xi_N).
+    /// Edges of the box (ξ_N).
     pub fn extent(&self) -> [f64; 3] {
         self.cells.map(|n| n as f64 * self.spacing)
     }
@@ -130,7 +130,7 @@ impl Grid {
         (k * self.cells[1] + j) * self.cells[0] + i
     }
 
-    /// Centre of cell (i, j, k) (xi_N).
+    /// Centre of cell (i, j, k) (ξ_N).
     pub fn centre(&self, ijk: [usize; 3]) -> [f64; 3] {
         ijk.map(|i| (i as f64 + 0.5) * self.spacing)
     }

@@ -21,7 +21,7 @@ use crate::vector::dispatch;
 /// ```
 ///
 /// It is symmetric in the inner product of the gradient flow, the sum over cells of mass times P:P'. A small change along an
-/// eigenvector decays at Gamma times its eigenvalue, whose unit is L/xi_N². The derivative is exact, not a difference of
+/// eigenvector decays at Γ times its eigenvalue, whose unit is L/ξ_N². The derivative is exact, not a difference of
 /// fields: the elastic part is linear and the bulk part a cubic, so one pass is enough where differences need two.
 ///
 /// # Validation

@@ -13,7 +13,7 @@ use crate::real::{Lanes, Real};
 /// Widest vector, in numbers.
 const WIDEST: usize = 16;
 
-/// Coefficients of the molecular field of a cell whose six links are whole.
+/// Coefficients of the molecular field of a cell with six whole links to its neighbours Q_n; E is the field term.
 ///
 /// ```math
 /// H = \frac{L}{h^2} \sum_{6} (Q_n - Q) - A Q - B\,(Q^2)_{\mathrm{tr}} - C\,(Q:Q)\,Q + E

@@ -4,7 +4,7 @@
 //! protocol: charge, switch, discharge) → [`record`] (what it returns). What is measured on a field: [`order`], [`defects`],
 //! [`ring`], [`surface`]; what it is made of: [`tensor`], [`anchoring`]; the fluid: [`flow`] on top of [`stokes`].
 //!
-//! Units are reduced: lengths in the nematic correlation length xi_N, energies in L xi_N, times in tau_N. Settings and results
+//! Units are reduced: lengths in the nematic correlation length ξ_N, energies in L ξ_N, times in τ_N. Settings and results
 //! have public fields; types with an invariant have methods.
 
 pub mod anchoring;

@@ -13,7 +13,7 @@ use crate::tensor::{Tensor5, contract, square_traceless};
 ///   + \tfrac{L}{2} (\partial_k Q_{ij})^2 + \tfrac{L_2}{2} (\partial_j Q_{ij})^2
 /// ```
 ///
-/// The defaults are those of [patil2020discharging]; its viscosity is 1.38/Gamma, since the printed unit is inverted. Q is the
+/// The defaults are those of [patil2020discharging]; its viscosity is 1.38/Γ, since the printed unit is inverted. Q is the
 /// order tensor.
 ///
 /// # References
@@ -24,22 +24,22 @@ use crate::tensor::{Tensor5, contract, square_traceless};
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Material {
-    /// A, in L/xi_N².
+    /// A, in L/ξ_N².
     pub a: f64,
-    /// B, in L/xi_N².
+    /// B, in L/ξ_N².
     pub b: f64,
-    /// C, in L/xi_N².
+    /// C, in L/ξ_N².
     pub c: f64,
     /// Elastic constant L: 1 in reduced units.
     pub elastic_constant: f64,
     /// Second elastic constant L_2, in L; leave it out and no term is modelled.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub second_elastic_constant: Option<f64>,
-    /// Rotational mobility Gamma, of dQ/dt = Gamma H: 1 in reduced units. In the original paper: "rotational viscosity parameter".
+    /// Rotational mobility Γ, of dQ/dt = Γ H: 1 in reduced units. In the original paper: "rotational viscosity parameter".
     pub rotational_mobility: f64,
-    /// Flow alignment chi: no unit.
+    /// Flow alignment χ: no unit.
     pub flow_alignment: f64,
-    /// Isotropic viscosity eta, in 1/Gamma.
+    /// Isotropic viscosity η, in 1/Γ.
     pub viscosity: f64,
     /// Order S at surfaces and of start fields: no unit; the equilibrium order when left out.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -122,13 +122,13 @@ impl Material {
             .unwrap_or(0.0)
     }
 
-    /// Bulk energy density of a uniaxial nematic of order `order`, in L/xi_N².
+    /// Bulk energy density of a uniaxial nematic of order `order`, in L/ξ_N².
     pub fn uniaxial_density(&self, order: f64) -> f64 {
         let s2 = order * order;
         0.75 * self.a * s2 + 0.25 * self.b * s2 * order + 0.5625 * self.c * s2 * s2
     }
 
-    /// Bulk energy density of the uniform equilibrium, from which energies count, in L/xi_N²; 0 without a nematic phase.
+    /// Bulk energy density of the uniform equilibrium, from which energies count, in L/ξ_N²; 0 without a nematic phase.
     pub fn reference_density(&self) -> f64 {
         self.equilibrium_order()
             .map_or(0.0, |order| self.uniaxial_density(order))
@@ -139,14 +139,14 @@ impl Material {
         self.reference_density() > 0.0
     }
 
-    /// Bulk energy density of Q above the reference, in L/xi_N².
+    /// Bulk energy density of Q above the reference, in L/ξ_N².
     pub fn bulk_density(&self, q: &Tensor5) -> f64 {
         let t = contract(q, q);
         let cube = contract(&square_traceless(q), q);
         0.5 * self.a * t + self.b / 3.0 * cube + 0.25 * self.c * t * t - self.reference_density()
     }
 
-    /// Bulk part of the molecular field, −∂f/∂Q made traceless, in L/xi_N².
+    /// Bulk part of the molecular field, −∂f/∂Q made traceless, in L/ξ_N².
     ///
     /// ```math
     /// H = -A Q - B\,(Q^2)_{\mathrm{tr}} - C\,(Q:Q)\,Q
@@ -157,7 +157,7 @@ impl Material {
         std::array::from_fn(|c| -linear * q[c] - self.b * square[c])
     }
 
-    /// Rate at which a uniform nematic returns to the equilibrium order, over Gamma; also L/xi_N².
+    /// Rate at which a uniform nematic returns to the equilibrium order, over Γ; also L/ξ_N².
     ///
     /// ```math
     /// A + B S_{\mathrm{eq}} + \tfrac92 C S_{\mathrm{eq}}^2
@@ -167,7 +167,7 @@ impl Material {
         self.a + self.b * s + 4.5 * self.c * s * s
     }
 
-    /// Nematic correlation length xi_N, in the unit of length; infinite where the order is not stable.
+    /// Nematic correlation length ξ_N, in the unit of length; infinite where the order is not stable.
     pub fn correlation_length(&self) -> f64 {
         let stiffness = self.order_stiffness();
         if stiffness > 0.0 {
@@ -177,7 +177,7 @@ impl Material {
         }
     }
 
-    /// Largest ratio by which the flow that a small tilt drives speeds its decay (bend, or splay where chi is negative).
+    /// Largest ratio by which the flow that a small tilt drives speeds its decay (bend, or splay where χ is negative).
     ///
     /// ```math
     /// \beta = \frac{2 a^2}{\eta\,\Gamma}, \qquad a = \tfrac12 |\chi| \left(\tfrac23 + \tfrac S2\right) + \tfrac34 S

@@ -18,14 +18,14 @@ use crate::{Faces, Grid, Material, NematicError};
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ExternalField {
-    /// E, in the unit that makes chi_a E² an energy density in L/xi_N².
+    /// E, in the unit that makes χ_a E² an energy density in L/ξ_N².
     pub vector: [f64; 3],
-    /// Anisotropy chi_a: no unit. A positive one aligns the director with E.
+    /// Anisotropy χ_a: no unit. A positive one aligns the director with E.
     pub anisotropy: f64,
 }
 
 impl ExternalField {
-    /// Molecular field of the external field, −∂f/∂Q made traceless, in L/xi_N².
+    /// Molecular field of the external field, −∂f/∂Q made traceless, in L/ξ_N².
     pub fn molecular_field(&self) -> Tensor5 {
         let square = self.vector.iter().map(|e| e * e).sum::<f64>();
         if square == 0.0 {
@@ -53,9 +53,9 @@ pub enum Sides {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct NematicParameters {
-    /// Radius R of the particle, in xi_N.
+    /// Radius R of the particle, in ξ_N.
     pub radius: f64,
-    /// Grid spacing h, in xi_N.
+    /// Grid spacing h, in ξ_N.
     pub spacing: f64,
     /// Edges of the cell in radii; each is rounded to an even number of spacings.
     pub cell: [f64; 3],

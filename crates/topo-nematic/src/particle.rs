@@ -27,7 +27,7 @@ impl TryFrom<Unchecked> for Particle {
 }
 
 impl Particle {
-    /// A sphere of `radius` (xi_N) about `centre`, in the coordinates of the grid.
+    /// A sphere of `radius` (ξ_N) about `centre`, in the coordinates of the grid.
     ///
     /// # Errors
     /// A radius that is not a positive finite number, or a centre that is not finite.
@@ -85,12 +85,12 @@ impl Particle {
         Ok(())
     }
 
-    /// Centre (xi_N, from the lower corner of the grid).
+    /// Centre (ξ_N, from the lower corner of the grid).
     pub fn centre(&self) -> [f64; 3] {
         self.centre
     }
 
-    /// Radius R (xi_N).
+    /// Radius R (ξ_N).
     pub fn radius(&self) -> f64 {
         self.radius
     }
@@ -108,7 +108,7 @@ impl Particle {
         })
     }
 
-    /// Distance of `point` from the surface (xi_N), negative inside.
+    /// Distance of `point` from the surface (ξ_N), negative inside.
     pub fn distance(&self, grid: &Grid, point: [f64; 3]) -> f64 {
         let d = self.offset(grid, point);
         (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt() - self.radius

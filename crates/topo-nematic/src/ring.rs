@@ -14,11 +14,11 @@ const N_MODES: usize = 40;
 /// A ring of low order around the vertical axis of the particle.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Ring {
-    /// Mean distance from the vertical axis, in xi_N.
+    /// Mean distance from the vertical axis, in ξ_N.
     pub radius: f64,
-    /// Mean height above the particle's centre, in xi_N.
+    /// Mean height above the particle's centre, in ξ_N.
     pub height: f64,
-    /// Amplitudes of the modes m = 1, 2, ... of its height z(φ), in xi_N.
+    /// Amplitudes of the modes m = 1, 2, ... of its height z(φ), in ξ_N.
     pub modes: Vec<f64>,
 }
 
@@ -30,7 +30,7 @@ impl Ring {
             .map_or(0, |(m, _)| m + 1)
     }
 
-    /// Amplitude of the strongest mode, in xi_N.
+    /// Amplitude of the strongest mode, in ξ_N.
     pub fn amplitude(&self) -> f64 {
         self.modes.iter().copied().fold(0.0, f64::max)
     }
@@ -65,7 +65,7 @@ pub fn ring(state: &NematicState, threshold: f64) -> Option<Ring> {
     })
 }
 
-/// The closed line of the ring, relative to the particle's centre (xi_N): one point per sector of azimuth.
+/// The closed line of the ring, relative to the particle's centre (ξ_N): one point per sector of azimuth.
 ///
 /// Where the core of a disclination touches the particle, [`defect_lines`](crate::defects::defect_lines) ends; this line
 /// continues.

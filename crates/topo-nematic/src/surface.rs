@@ -10,7 +10,7 @@ use crate::tensor::order_and_director;
 /// A surface of triangles.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct TriangleMesh {
-    /// Corners (xi_N).
+    /// Corners (ξ_N).
     pub vertices: Vec<[f64; 3]>,
     /// Indices of the corners of each triangle, counter-clockwise seen from the side of higher order.
     pub triangles: Vec<[u32; 3]>,
@@ -108,7 +108,7 @@ impl TriangleMesh {
         }
     }
 
-    /// Sum of the areas of the triangles, in xi_N².
+    /// Sum of the areas of the triangles, in ξ_N².
     pub fn area(&self) -> f64 {
         let vector = |t: &[u32; 3]| {
             let [p, q, r] = t.map(|v| nalgebra::Vector3::from(self.vertices[v as usize]));

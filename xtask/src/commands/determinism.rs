@@ -4,7 +4,7 @@ use crate::cli::DeterminismArgs;
 use crate::workspace::at;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 use topo_cli::CliError;
@@ -134,6 +134,7 @@ fn torn(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::path::PathBuf;
 
     #[test]
     fn the_whole_is_computed_and_nothing_drawn() {

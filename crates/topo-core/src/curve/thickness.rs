@@ -64,7 +64,7 @@ pub fn thickness_brute_force(curve: &Polyline) -> Thickness {
     Thickness::new(min_rad(curve), self_distance(curve, false))
 }
 
-/// Half the smallest distance between points at least pi `radius` apart along the curve, another usual definition of the
+/// Half the smallest distance between points at least π `radius` apart along the curve, another usual definition of the
 /// self-distance: it reaches `radius` exactly when a tube of that radius does not overlap itself.
 pub fn windowed_half_distance(curve: &Polyline, radius: f64) -> f64 {
     let x = curve.vertices();

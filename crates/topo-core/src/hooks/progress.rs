@@ -38,7 +38,7 @@ pub struct Progress {
     pub released: Option<f64>,
     /// Energy, in the battery's unit.
     pub energy: Option<f64>,
-    /// Root mean square of the molecular field of a nematic that relaxes, in L/xi_N².
+    /// Root mean square of the molecular field of a nematic that relaxes, in L/ξ_N².
     pub rms_field: Option<f64>,
 }
 

@@ -71,7 +71,7 @@ pub struct FireStep {
 impl Fire {
     /// A relaxation that begins from rest, whose longest time step will be `longest`.
     ///
-    /// The scheme is stable below 2/ω, ω being the highest frequency of the unknowns.
+    /// The scheme is stable below 2/ω, where ω is the highest frequency of the unknowns. Times are in the model's unit.
     pub fn at_rest(longest: f64) -> Self {
         Self {
             dt: FIRST * longest,

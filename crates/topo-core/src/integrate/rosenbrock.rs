@@ -111,7 +111,7 @@ impl RosenbrockW {
         self.stages = vec![vec![0.0; n]; self.tableau.n_stages];
     }
 
-    /// The parameter gamma.
+    /// The parameter γ.
     pub fn gamma(&self) -> f64 {
         self.tableau.gamma
     }

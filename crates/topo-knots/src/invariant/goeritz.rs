@@ -2,7 +2,8 @@
 
 use super::diagram::Diagram;
 
-/// Determinant and signature of a diagram; none if its code is not that of a planar diagram.
+/// Determinant and signature of a diagram from its Goeritz matrix G, with the correction η(c) of crossings of type II; none if
+/// its code is not that of a planar diagram.
 ///
 /// ```math
 /// \sigma(K) = \mathrm{sign}\,G - \sum_{\text{type II}} \eta(c), \qquad \det K = |\det G|

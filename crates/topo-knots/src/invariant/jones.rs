@@ -97,7 +97,8 @@ impl Jones {
     }
 }
 
-/// Jones polynomial of a diagram of a knot; `None` when it has too many crossings or is too wide.
+/// Jones polynomial of a diagram of a knot, from Kauffman's bracket and the writhe w; `None` when it has too many crossings or
+/// is too wide.
 ///
 /// ```math
 /// V(t) = (-A^3)^{-w} \langle D \rangle,\quad t = A^{-4}, \qquad

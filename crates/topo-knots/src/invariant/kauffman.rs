@@ -42,7 +42,7 @@ impl Point {
     }
 }
 
-/// Digits of pi and of e.
+/// Digits of π and of e.
 static POINT: LazyLock<Point> =
     LazyLock::new(|| Point::new(314_159_265_358_979_323, 271_828_182_845_904_523));
 
@@ -129,7 +129,7 @@ impl Link {
         self.twin.len() / 4
     }
 
-    /// Value of Lambda, by undoing crossings until every component lies above the next and descends.
+    /// Value of Λ, by undoing crossings until every component lies above the next and descends.
     fn value(mut self, point: &Point, left: &mut usize) -> Option<u64> {
         *left = left.checked_sub(1)?;
         let mut factor = 1;

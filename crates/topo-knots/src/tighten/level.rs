@@ -79,7 +79,8 @@ pub(crate) struct Outcome {
     pub converged: bool,
 }
 
-/// Shortens a closed curve at thickness 1, keeping its number of vertices and its type.
+/// Shortens a closed curve at thickness 1, with its number of vertices and its type kept, by a sequence of quadratic programs
+/// in the displacements y:
 ///
 /// ```math
 /// \min_y \frac{N}{2 L_0} \sum_i |e_i + \Delta y_i|^2 + \frac{\mu h}{2} |y|^2 + \frac{\mu_2}{2 h^3} |D^2 y|^2,

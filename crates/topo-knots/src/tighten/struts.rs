@@ -10,7 +10,7 @@ use crate::{V, thickness};
 /// Struts of a tight closed curve: the two ends of each on the centreline, the shortest first.
 ///
 /// A strut joins strands at most `1 + slack` diameters of the thickest tube apart that are at least half a turn of that tube
-/// (pi radii) apart along the curve. Of struts whose two ends are both within `spacing` edges of those of a shorter strut, only
+/// (π radii) apart along the curve. Of struts whose two ends are both within `spacing` edges of those of a shorter strut, only
 /// the shorter one is kept, so that a line of contact is a row of struts.
 ///
 /// # Validation

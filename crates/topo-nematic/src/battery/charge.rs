@@ -171,7 +171,7 @@ impl ChargedNematic {
         &self.report
     }
 
-    /// Energy by part, in L xi_N.
+    /// Energy by part, in L ξ_N.
     pub fn energy(&self) -> &EnergyParts {
         &self.report.energy
     }

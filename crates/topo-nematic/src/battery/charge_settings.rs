@@ -13,7 +13,7 @@ pub struct ChargeSettings {
     pub seeds: Vec<f64>,
     /// Direction of the tilt, in radians from x.
     pub seed_azimuth: f64,
-    /// Root mean square of the molecular field that counts as converged, in L/xi_N².
+    /// Root mean square of the molecular field that counts as converged, in L/ξ_N².
     pub tolerance: f64,
     /// Largest change of the order parameter over 25 steps that counts as converged.
     pub order_tolerance: f64,

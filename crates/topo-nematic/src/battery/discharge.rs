@@ -31,9 +31,9 @@ pub struct DischargeSettings {
     /// The run ends when this share of the stored energy is released: of the energy after the switch, above that of the final
     /// state.
     pub until_released: f64,
-    /// Longest time followed, in R²/(Gamma L).
+    /// Longest time followed, in R²/(Γ L).
     pub longest: f64,
-    /// First output time after the switch, in R²/(Gamma L).
+    /// First output time after the switch, in R²/(Γ L).
     pub first_output: f64,
     /// Output times per decade.
     pub outputs_per_decade: f64,
@@ -85,13 +85,13 @@ impl DischargeSettings {
 /// A discharge: what the switch removed, and how the rest was released.
 #[derive(Debug, Clone)]
 pub struct Discharge {
-    /// Energy that the switch itself removed, in L xi_N.
+    /// Energy that the switch itself removed, in L ξ_N.
     pub removed: f64,
-    /// Energy just after the switch, in L xi_N.
+    /// Energy just after the switch, in L ξ_N.
     pub start: f64,
     /// The state of equilibrium after the switch: released shares count from `start` to its energy.
     pub final_state: FinalState,
-    /// Energy that can be released, `start` minus the final energy, in L xi_N; none where nothing is stored.
+    /// Energy that can be released, `start` minus the final energy, in L ξ_N; none where nothing is stored.
     pub stored: Option<f64>,
     /// The run.
     pub record: RunRecord,

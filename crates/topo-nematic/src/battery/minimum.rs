@@ -10,10 +10,10 @@ use crate::kernel::run::Kernel;
 /// How the check of a charged state ended.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct MinimumReport {
-    /// Lowest eigenvalue of the Hessian of the energy in the inner product of the gradient flow, in L/xi_N²: a small change along
-    /// its mode decays at Gamma times this.
+    /// Lowest eigenvalue of the Hessian of the energy in the inner product of the gradient flow, in L/ξ_N²: a small change along
+    /// its mode decays at Γ times this.
     pub lowest_eigenvalue: f64,
-    /// Norm of the residual A v − λ v of its mode v, in L/xi_N².
+    /// Norm of the residual A v − λ v of its mode v, in L/ξ_N².
     pub residual: f64,
     /// What the eigenvalue means for the state.
     pub state: MinimumState,
@@ -115,7 +115,7 @@ impl<'a> Check<'a> {
 }
 
 impl Kernel<f64> {
-    /// Decay of the director's slowest mode between strong plates, over Gamma: L π²/L_z².
+    /// Decay of the director's slowest mode between strong plates, over Γ: L π²/L_z².
     fn plate_mode(&self) -> f64 {
         let height = self.domain.grid.extent()[2];
         self.material().elastic_constant * (std::f64::consts::PI / height).powi(2)

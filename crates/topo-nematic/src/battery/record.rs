@@ -52,9 +52,9 @@ pub struct ChargeReport {
     pub seed: f64,
     /// Steps of the relaxation, over all start fields.
     pub n_steps: u64,
-    /// Root mean square of the molecular field at the end, in L/xi_N².
+    /// Root mean square of the molecular field at the end, in L/ξ_N².
     pub rms_field: f64,
-    /// Energy by part, in L xi_N.
+    /// Energy by part, in L ξ_N.
     pub energy: EnergyParts,
     /// Order parameter of buckling.
     pub order: OrderParameter,
@@ -102,7 +102,7 @@ impl FinalSource {
 /// The state of equilibrium under the anchoring and field after a switch.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct FinalState {
-    /// Its energy, in L xi_N.
+    /// Its energy, in L ξ_N.
     pub energy: f64,
     /// How it was found.
     pub source: FinalSource,
@@ -111,17 +111,17 @@ pub struct FinalState {
 /// The nematic at one output time of a discharge.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct NematicSample {
-    /// Time since the switch, in tau_N.
+    /// Time since the switch, in τ_N.
     pub time: f64,
-    /// Energy by part, in L xi_N.
+    /// Energy by part, in L ξ_N.
     pub energy: EnergyParts,
-    /// Dissipated so far by rotation and by viscosity, in L xi_N.
+    /// Dissipated so far by rotation and by viscosity, in L ξ_N.
     pub dissipated: [f64; 2],
     /// Order parameter.
     pub order: OrderParameter,
     /// The defect ring, while there is one.
     pub ring: Option<Ring>,
-    /// Largest speed, in xi_N/tau_N; none without flow.
+    /// Largest speed, in ξ_N/τ_N; none without flow.
     pub max_speed: Option<f64>,
     /// Correlation of the velocity with the first one sampled, ⟨u(t)·u(t_1)⟩/(‖u(t)‖ ‖u(t_1)‖) over the fluid: below zero the
     /// flow has reversed; none without flow.
@@ -135,7 +135,7 @@ pub struct FlowReport {
     pub solver: &'static str,
     /// Its counters.
     pub counters: FlowCounters,
-    /// Largest speed at any update, in xi_N/tau_N.
+    /// Largest speed at any update, in ξ_N/τ_N.
     pub max_speed: f64,
     /// Largest velocity left on the particle's boundary at any update, relative to that without the particle.
     pub boundary_residual: f64,
@@ -168,8 +168,8 @@ impl PhaseExtension for NematicPhase {
     }
 }
 
-/// Counters and guards of a discharge: times in tau_N, energies in L xi_N.
+/// Counters and guards of a discharge: times in τ_N, energies in L ξ_N.
 pub type PhaseReport = topo_core::PhaseReport<NematicPhase>;
 
-/// What a discharge leaves behind: times in tau_N, energies in L xi_N.
+/// What a discharge leaves behind: times in τ_N, energies in L ξ_N.
 pub type RunRecord = topo_core::RunRecord<NematicSample, NematicPhase>;

@@ -46,7 +46,7 @@ impl Default for SwitchTarget {
 pub struct SwitchSettings {
     /// What the surface is switched to.
     pub to: SwitchTarget,
-    /// Duration of the switch, in tau_N; at once when left out.
+    /// Duration of the switch, in τ_N; at once when left out.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ramp: Option<f64>,
 }
@@ -172,12 +172,12 @@ impl SwitchedNematic {
         &self.state
     }
 
-    /// Energy just after the switch, in L xi_N.
+    /// Energy just after the switch, in L ξ_N.
     pub fn start(&self) -> f64 {
         self.start
     }
 
-    /// Energy that the switch itself removed, in L xi_N; negative if it added energy.
+    /// Energy that the switch itself removed, in L ξ_N; negative if it added energy.
     pub fn removed(&self) -> f64 {
         self.charged.energy().total() - self.start
     }
@@ -195,7 +195,7 @@ const STEEPEST: f64 = 3.0;
 
 /// A field that was continued into the sphere.
 pub(crate) struct Extended {
-    /// Its energy, in L xi_N.
+    /// Its energy, in L ξ_N.
     pub energy: f64,
     /// Slope from the surface inwards, in multiples of that outside: near 1 where apertures and volumes are right.
     #[cfg_attr(

@@ -364,27 +364,27 @@ impl FlowCoupling {
         self.weights.as_deref()
     }
 
-    /// Velocity of the last update, in xi_N/tau_N.
+    /// Velocity of the last update, in ξ_N/τ_N.
     pub fn velocity(&self) -> &MacField {
         &self.velocity
     }
 
-    /// Velocity at the cell centres, in xi_N/tau_N, component-major, 3 x n_cells; newly allocated.
+    /// Velocity at the cell centres, in ξ_N/τ_N, component-major, 3 x n_cells; newly allocated.
     pub fn centred_velocity(&self) -> Vec<f64> {
         observables::centred(&self.velocity)
     }
 
-    /// Curl of the velocity at the cell centres, in 1/tau_N, component-major, 3 x n_cells; newly allocated.
+    /// Curl of the velocity at the cell centres, in 1/τ_N, component-major, 3 x n_cells; newly allocated.
     pub fn vorticity(&self) -> Vec<f64> {
         observables::vorticity(&self.flow(), self.level)
     }
 
-    /// Largest velocity component on a face, in xi_N/tau_N.
+    /// Largest velocity component on a face, in ξ_N/τ_N.
     pub fn max_speed(&self) -> f64 {
         self.velocity.max_abs()
     }
 
-    /// Power f·u that the director gave to the fluid at the last update, in L xi_N/tau_N: the flow lowers the energy of the
+    /// Power f·u that the director gave to the fluid at the last update, in L ξ_N/τ_N: the flow lowers the energy of the
     /// director at this rate.
     ///
     /// With moving walls, the co-rotation and alignment of the cells next to them are not included.
@@ -392,7 +392,7 @@ impl FlowCoupling {
         self.power
     }
 
-    /// Viscous dissipation at the last update, in L xi_N/tau_N: the power, the work of the drive, and the work of the boundary
+    /// Viscous dissipation at the last update, in L ξ_N/τ_N: the power, the work of the drive, and the work of the boundary
     /// residual of the particle.
     pub fn dissipation(&self) -> f64 {
         self.dissipation

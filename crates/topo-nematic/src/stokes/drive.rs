@@ -13,11 +13,11 @@ use crate::stokes::{MacField, StokesError};
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Drive {
-    /// Uniform force per volume, in L/xi_N³.
+    /// Uniform force per volume, in L/ξ_N³.
     pub body_force: [f64; 3],
-    /// Velocity of the lower and the upper wall along each axis, in xi_N/tau_N: tangential.
+    /// Velocity of the lower and the upper wall along each axis, in ξ_N/τ_N: tangential.
     pub wall_velocity: [[[f64; 3]; 2]; 3],
-    /// Mean velocity, in xi_N/tau_N; only where all sides are periodic.
+    /// Mean velocity, in ξ_N/τ_N; only where all sides are periodic.
     pub mean_velocity: [f64; 3],
 }
 
@@ -99,7 +99,7 @@ impl Drive {
         sum
     }
 
-    /// Work per time of body force and walls on a fluid that moves with `velocity`, in L xi_N/tau_N.
+    /// Work per time of body force and walls on a fluid that moves with `velocity`, in L ξ_N/τ_N.
     pub(crate) fn power(&self, grid: &Grid, viscosity: f64, velocity: &MacField) -> f64 {
         let stress = 2.0 * viscosity / grid.spacing().powi(2);
         let mut sum = velocity.dot_uniform(self.body_force);

@@ -70,9 +70,9 @@ pub enum StokesError {
         "a particle of radius {radius} covers no cell face at spacing {spacing}: refine the grid"
     )]
     ParticleTooSmall {
-        /// Hydrodynamic radius, in xi_N.
+        /// Hydrodynamic radius, in ξ_N.
         radius: f64,
-        /// Grid spacing, in xi_N.
+        /// Grid spacing, in ξ_N.
         spacing: f64,
     },
     /// A parameter outside its domain.

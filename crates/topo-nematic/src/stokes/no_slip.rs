@@ -18,18 +18,18 @@ const RADIUS_SHIFT: f64 = 0.25;
 /// Most iterations of one update.
 const MAX_ITERATIONS: usize = 500;
 
-/// Unknown forces on boundary faces that bring the fluid there to rest.
+/// Forces on boundary faces that bring the fluid there to rest.
 ///
-/// With P the extension of a list of forces to the grid and M the map from force to velocity, the forces lambda obey
+/// With P the extension of a list of forces to the grid and M the map from force to velocity, the forces λ follow from
 ///
 /// ```math
 /// P^T M P\, \lambda = -P^T u_0, \qquad u_0 = M f,
 /// ```
 ///
 /// a symmetric positive semi-definite system, solved by conjugate gradients with one restricted flow solve per iteration. The
-/// boundary faces are those within R + h/4 of the centre of which one of the 26 neighbours of the same component is not: a
-/// layer that leaves no gap for the flow to leak through. The start is the combination of the last solutions that is best in
-/// the norm of the system (linear extrapolation in time is one of the candidates).
+/// boundary faces are those within R + h/4 of the centre that have a neighbour (of the 26 of the same component) outside that
+/// distance: a layer that leaves no gap for the flow to leak through. The start is the combination of the last solutions that
+/// is best in the norm of the system (linear extrapolation in time is one of the candidates).
 ///
 /// # Validation
 /// `val_drag_on_a_cubic_array_of_spheres`, `particle_holds_the_fluid_at_its_boundary`
@@ -70,7 +70,7 @@ pub struct NoSlipReport {
 }
 
 impl NoSlip {
-    /// A sphere at `centre` of `radius` (xi_N) in `grid`; boundary velocities fall to `tolerance` of those without it.
+    /// A sphere at `centre` of `radius` (ξ_N) in `grid`; boundary velocities fall to `tolerance` of those without it.
     ///
     /// # Errors
     /// [`StokesError::Value`] for a tolerance or radius that is not positive, [`StokesError::ParticleTooSmall`] for a sphere
@@ -174,7 +174,7 @@ impl NoSlip {
         &self.sites
     }
 
-    /// Forces per volume that the particle exerts on the fluid, in L/xi_N³, one per boundary face.
+    /// Forces per volume that the particle exerts on the fluid, in L/ξ_N³, one per boundary face.
     pub fn forces(&self) -> &[f64] {
         &self.forces
     }
@@ -187,7 +187,7 @@ impl NoSlip {
             .sum()
     }
 
-    /// Force that the particle exerts on the fluid, in L: minus the drag, for cells of volume `volume` (xi_N³).
+    /// Force that the particle exerts on the fluid, in L: minus the drag, for cells of volume `volume` (ξ_N³).
     pub fn total_force(&self, volume: f64) -> [f64; 3] {
         let mut total = [0.0; 3];
         for ((axis, _), force) in self.sites.iter().zip(&self.forces) {

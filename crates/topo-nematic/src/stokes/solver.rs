@@ -13,7 +13,7 @@ use crate::stokes::{FaceSites, MacField, StokesError};
 /// semi-definite, and moving walls are forces too (see [`Drive`](crate::stokes::Drive)). In a fully periodic box the mean velocity is
 /// zero, and the mean force is balanced by a mean pressure gradient.
 pub trait StokesSolver: Send + Sync {
-    /// Writes the velocity (xi_N/tau_N) that `force` (per volume, on faces, L/xi_N³) drives.
+    /// Writes the velocity (ξ_N/τ_N) that `force` (per volume, on faces, L/ξ_N³) drives.
     ///
     /// # Errors
     /// [`StokesError::NotConverged`] of an iterative solver.
@@ -30,7 +30,7 @@ pub trait StokesSolver: Send + Sync {
         velocities: &mut [f64],
     ) -> Result<(), StokesError>;
 
-    /// Viscosity η, in 1/Gamma.
+    /// Viscosity η, in 1/Γ.
     fn viscosity(&self) -> f64;
 
     /// Solves so far: of whole fields, and at sites.

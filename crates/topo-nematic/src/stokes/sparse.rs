@@ -19,7 +19,7 @@ mod transfer;
 pub struct SparseOptions {
     /// Residual relative to the force, in the norm of the preconditioner.
     pub tolerance: f64,
-    /// Cells up to which a grid is factorised as it is; larger ones are coarsened first.
+    /// Number of cells up to which a grid is factorised directly; larger grids are coarsened first.
     pub direct_up_to: usize,
     /// Largest memory it may take, in bytes.
     pub memory_limit: u64,
@@ -123,7 +123,7 @@ impl Sparse {
         (vectors + cycles) as u64 + factors as u64
     }
 
-    /// Solves for the force in the iteration's right-hand side, which is scaled by h^2/eta.
+    /// Solves for the force in the iteration's right-hand side, which is scaled by h^2/η.
     fn run(&mut self) -> Result<(), StokesError> {
         let n = self.grid.n_cells();
         let periodic = self.grid.faces() == [Faces::Periodic; 3];
