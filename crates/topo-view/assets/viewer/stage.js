@@ -92,7 +92,9 @@ function Stage(element, unit) {
   // hand are kept
   function fit(center, reach, height) {
     const up = (camera.fov * Math.PI) / 360, across = Math.atan(Math.tan(up) * camera.aspect);
-    const distance = 1.05 * (reach.length ? Math.max(reach[0] / Math.tan(across), reach[1] / Math.tan(up)) : reach / Math.sin(Math.min(up, across)));
+    const distance = reach.length
+      ? 1.2 * Math.max(reach[0] / Math.tan(across), reach[1] / Math.tan(up))
+      : (1.05 * reach) / Math.sin(Math.min(up, across));
     const away = camera.position.clone().sub(controls.target);
     const zoom = height === undefined && seen.distance ? away.length() / seen.distance : 1;
     if (height !== undefined) away.set(0, height, 1);

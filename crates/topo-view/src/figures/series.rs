@@ -17,25 +17,28 @@ pub struct Chosen {
     pub color: &'static str,
     /// Shape of its points.
     pub marker: MarkerShape,
+    /// Width of its line: where two run on each other, the lower one shows at its sides.
+    pub width: f64,
 }
 
 /// Knots that are picked out; the others stay grey.
 pub const CHOSEN: [Chosen; 4] = [
-    Chosen::new("3_1", BLUE, MarkerShape::Circle),
-    Chosen::new("4_1", VERMILION, MarkerShape::Square),
-    Chosen::new("7_1", SKY, MarkerShape::Triangle),
-    Chosen::new("7_4", INK, MarkerShape::Diamond),
+    Chosen::new("3_1", BLUE, MarkerShape::Circle, 1.6),
+    Chosen::new("4_1", VERMILION, MarkerShape::Square, 1.6),
+    Chosen::new("7_1", SKY, MarkerShape::Triangle, 3.2),
+    Chosen::new("7_4", INK, MarkerShape::Diamond, 1.0),
 ];
 
 /// Grey of the knots that are not picked out.
 pub const OTHERS: &str = "#c3c8ce";
 
 impl Chosen {
-    const fn new(knot: &'static str, color: &'static str, marker: MarkerShape) -> Self {
+    const fn new(knot: &'static str, color: &'static str, marker: MarkerShape, width: f64) -> Self {
         Self {
             knot,
             color,
             marker,
+            width,
         }
     }
 
@@ -50,7 +53,7 @@ impl Chosen {
                 .with_data(points)
                 .with_color(self.color)
                 .with_marker(self.marker)
-                .with_size(2.4),
+                .with_size(0.6 * self.width.min(1.6) + 1.5),
         )
     }
 }
@@ -59,7 +62,7 @@ impl Chosen {
 pub fn knot_curve(knot: &str, points: Vec<(f64, f64)>) -> Vec<Plot> {
     match Chosen::of(knot) {
         Some(chosen) => vec![
-            line(points.clone(), chosen.color, 1.5),
+            line(points.clone(), chosen.color, chosen.width),
             chosen.points(points),
         ],
         None => vec![line(points, OTHERS, 1.0)],
@@ -86,7 +89,7 @@ pub fn knot_key(panel: &Panel, canvas: &mut Canvas, knots: &[&str]) -> Vec<Plot>
     for chosen in CHOSEN.iter().filter(|c| knots.contains(&c.knot)) {
         let curve = |p: Vec<(f64, f64)>| {
             vec![
-                line(vec![p[0], p[2]], chosen.color, 1.5),
+                line(vec![p[0], p[2]], chosen.color, chosen.width),
                 chosen.points(vec![p[1]]),
             ]
         };

@@ -27,7 +27,10 @@ struct Patch {
 /// Encodes frames of opaque RGB bytes, shown at `rate` frames a second for ever; the last one rests for two seconds.
 pub fn encode(size: Size, rate: u16, frames: &[Vec<u8>]) -> Result<Vec<u8>, ViewError> {
     let palette = Palette::of(frames);
-    let frames: Vec<Vec<u8>> = frames.par_iter().map(|f| palette.indices(f)).collect();
+    let frames: Vec<Vec<u8>> = frames
+        .par_iter()
+        .map(|f| palette.indices(f, size.width as usize))
+        .collect();
     write(size, rate, &palette, &frames).map_err(|e| ViewError::Drawing {
         reason: format!("movie: {e}"),
     })

@@ -55,13 +55,19 @@ impl Axes<'_> {
             let tick = 10.0_f64.powi(exponent);
             let x = left + width * self.time.fraction(tick);
             canvas.line([x, foot], [x, foot - 5.0], QUIET, 1.0);
-            canvas.text(x, foot + 1.1 * small, &text::log_tick(tick), style.middle());
+            canvas.text(
+                x,
+                foot + 1.15 * small,
+                &text::log_tick(tick),
+                style.middle(),
+            );
         }
         canvas.text(right, foot + 2.2 * small, &self.time.label, style.end());
         for (value, label) in self.ticks {
             let y = top + height * (1.0 - self.value.fraction(*value));
             canvas.line([left, y], [left + 5.0, y], QUIET, 1.0);
-            canvas.text(left - 4.0, y + 0.35 * small, label, style.end());
+            // the lowest one keeps clear of the first number of time
+            canvas.text(left - 4.0, (y + 0.35 * small).min(foot), label, style.end());
         }
         let upward = Style {
             upward: true,

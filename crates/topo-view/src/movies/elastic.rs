@@ -110,12 +110,13 @@ fn color_key(canvas: &mut Canvas) {
 
 impl Actor {
     fn new(knot: &str, twist: f64, frames: Vec<ShapeFrame>) -> Result<Self, ViewError> {
-        let Some(first) = frames.first() else {
+        let (Some(first), Some(last)) = (frames.first(), frames.last()) else {
             return Err(ViewError::Drawing {
                 reason: format!("no frame of {knot}"),
             });
         };
-        let turn = camera::flattest(&first.vertices);
+        // seen from where both the knot and the released fibre are wide
+        let turn = camera::flattest_of(&[&first.vertices, &last.vertices]);
         let views = frames
             .iter()
             .map(|f| camera::view(&f.vertices, &turn))

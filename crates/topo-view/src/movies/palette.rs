@@ -1,11 +1,16 @@
 //! A palette for all frames of a movie: one byte a pixel instead of three.
 
+use rayon::prelude::*;
+
 /// Colours of a palette; the index after the last one is free for "as before".
 pub const N_COLORS: usize = 255;
 
 /// Bits kept of a channel while colours are counted.
 const BITS: usize = 6;
 const N_BINS: usize = 1 << (3 * BITS);
+
+/// Largest shift of a channel by dithering: about half a step of the palette in a shaded surface.
+const DITHER: f32 = 2.5;
 
 type Rgb = [u8; 3];
 
@@ -45,7 +50,7 @@ impl Palette {
         let used: Vec<usize> = (0..N_BINS).filter(|k| bins[*k].count > 0.0).collect();
         // wide flat grounds must not take all the colours from shaded things
         for k in &used {
-            let weight = bins[*k].count.sqrt();
+            let weight = bins[*k].count.sqrt().sqrt();
             bins[*k].sum = bins[*k].mean().map(|m| m * weight);
             bins[*k].count = weight;
         }
@@ -64,31 +69,53 @@ impl Palette {
             .iter()
             .map(|b| b.mean.map(|m| m.round() as u8))
             .collect();
-        let mut nearest = vec![0; N_BINS];
-        for k in used {
-            let mean = bins[k].mean();
-            let far = |c: &Rgb| {
-                (0..3)
-                    .map(|i| (f64::from(c[i]) - mean[i]).powi(2))
-                    .sum::<f64>()
-            };
-            let best =
-                (0..colors.len()).min_by(|a, b| far(&colors[*a]).total_cmp(&far(&colors[*b])));
-            nearest[k] = best.unwrap_or(0) as u8;
-        }
+        let nearest = (0..N_BINS)
+            .into_par_iter()
+            .map(|k| nearest_of(&colors, bins[k].color(k)))
+            .collect();
         Self { colors, nearest }
     }
 
-    /// Indices of the colours of a frame.
-    pub fn indices(&self, frame: &[u8]) -> Vec<u8> {
-        frame
-            .chunks_exact(3)
-            .map(|p| self.nearest[bin_of(p)])
-            .collect()
+    /// Indices of the colours of a frame `width` pixels wide, dithered by a pattern that stays in place from frame to frame.
+    pub fn indices(&self, frame: &[u8], width: usize) -> Vec<u8> {
+        let pixels = frame.chunks_exact(3).enumerate();
+        let index = |(k, p): (usize, &[u8])| {
+            let shift = dither(k % width, k / width);
+            let c: Rgb = std::array::from_fn(|i| (f32::from(p[i]) + shift).clamp(0.0, 255.0) as u8);
+            self.nearest[bin_of(&c)]
+        };
+        pixels.map(index).collect()
     }
 }
 
+/// What is added to a pixel so that the mean over its neighbours is nearer to what it should be (Bayer 1973: ordered dithering).
+fn dither(x: usize, y: usize) -> f32 {
+    const ORDER: [[u8; 4]; 4] = [[0, 8, 2, 10], [12, 4, 14, 6], [3, 11, 1, 9], [15, 7, 13, 5]];
+    DITHER * (f32::from(ORDER[y % 4][x % 4]) / 7.5 - 1.0)
+}
+
+/// Index of the palette's colour nearest to one.
+fn nearest_of(colors: &[Rgb], color: [f64; 3]) -> u8 {
+    let far = |c: &Rgb| {
+        (0..3)
+            .map(|i| (f64::from(c[i]) - color[i]).powi(2))
+            .sum::<f64>()
+    };
+    let best = (0..colors.len()).min_by(|a, b| far(&colors[*a]).total_cmp(&far(&colors[*b])));
+    best.unwrap_or(0) as u8
+}
+
 impl Bin {
+    /// The mean colour, or the middle of bin `k` where nothing fell into it.
+    fn color(&self, k: usize) -> [f64; 3] {
+        if self.count > 0.0 {
+            return self.mean();
+        }
+        let side = f64::from(1 << (8 - BITS));
+        let channel = |i: usize| (k >> (BITS * (2 - i))) % (1 << BITS);
+        std::array::from_fn(|i| (channel(i) as f64 + 0.5) * side)
+    }
+
     fn mean(&self) -> [f64; 3] {
         self.sum.map(|s| s / self.count.max(1e-300))
     }
@@ -148,7 +175,7 @@ mod tests {
     fn few_colours_are_kept_as_they_are() {
         let frame: Vec<u8> = [[255, 255, 255], [200, 30, 40], [10, 20, 30]].concat();
         let palette = Palette::of(&[frame.clone(), frame.clone()]);
-        let indices = palette.indices(&frame);
+        let indices = palette.indices(&frame, 3);
         let back: Vec<u8> = indices
             .iter()
             .flat_map(|k| palette.colors[usize::from(*k)])
@@ -167,7 +194,7 @@ mod tests {
         let palette = Palette::of(std::slice::from_ref(&frame));
         assert!(palette.colors.len() <= N_COLORS && palette.colors.contains(&[255; 3]));
         let mut worst = 0;
-        for (p, k) in frame.chunks_exact(3).zip(palette.indices(&frame)) {
+        for (p, k) in frame.chunks_exact(3).zip(palette.indices(&frame, 64)) {
             let c = palette.colors[usize::from(k)];
             worst = worst.max((0..3).map(|i| p[i].abs_diff(c[i])).max().unwrap());
         }

@@ -27,6 +27,19 @@ pub fn flattest(points: &[Vector3<f64>]) -> Matrix3<f64> {
     Matrix3::from_rows(&rows.map(|r| r.transpose()))
 }
 
+/// Rotation that shows all of several shapes wide, each counted by its form and not by its size.
+pub fn flattest_of(shapes: &[&[Vector3<f64>]]) -> Matrix3<f64> {
+    let scaled = |points: &&[Vector3<f64>]| -> Vec<Vector3<f64>> {
+        let center = centroid(points);
+        let sizes = points.iter().map(|p| (p - center).norm());
+        let size = sizes.sum::<f64>() / points.len().max(1) as f64;
+        let about = points.iter().map(|p| (p - center) / size.max(1e-12));
+        about.collect()
+    };
+    let all: Vec<Vector3<f64>> = shapes.iter().flat_map(scaled).collect();
+    flattest(&all)
+}
+
 /// Rotation of `points` that best lays them on `model` (same number of points), both about
 /// their centres (Kabsch); `None` when the numbers differ.
 pub fn aligned(points: &[Vector3<f64>], model: &[Vector3<f64>]) -> Option<Matrix3<f64>> {
@@ -109,6 +122,27 @@ mod tests {
         assert!((f.determinant() - 1.0).abs() < 1e-9);
         let [x0, y0, x1, y1] = extent(&view(&turned, &f));
         assert!(x1 - x0 > 4.0 * (y1 - y0));
+    }
+
+    #[test]
+    fn a_ring_and_a_long_line_across_it_are_both_seen_wide() {
+        let ring: Vec<_> = (0..60)
+            .map(|i| {
+                let (s, c) = (f64::from(i) * 0.1).sin_cos();
+                Vector3::new(c, s, 0.0)
+            })
+            .collect();
+        // seen onto the ring it is a dot
+        let line: Vec<_> = (0..60)
+            .map(|i| Vector3::new(0.0, 0.0, f64::from(i)))
+            .collect();
+        let width = |points: &[Vector3<f64>], turn: &Matrix3<f64>| {
+            let [x0, y0, x1, y1] = extent(&view(points, turn));
+            (x1 - x0).max(y1 - y0)
+        };
+        assert!(width(&line, &flattest(&ring)) < 1e-9);
+        let both = flattest_of(&[&ring, &line]);
+        assert!(width(&line, &both) > 58.0 && width(&ring, &both) > 1.9);
     }
 
     #[test]

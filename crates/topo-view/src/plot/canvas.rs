@@ -177,8 +177,9 @@ impl Canvas {
         for i in 0..N {
             let v = scale.value((i as f64 + 0.5) / N as f64);
             let y = at[1] + size[1] - (i + 1) as f64 * dy;
-            // A little overlap hides the seams between the steps.
-            self.rect([at[0], y], [size[0], dy + 0.3], &scale.css(v));
+            // An overlap of a pixel hides the seams between the steps.
+            let height = (dy + 1.0).min(at[1] + size[1] - y);
+            self.rect([at[0], y], [size[0], height], &scale.css(v));
         }
         for &tick in ticks {
             let y = at[1] + size[1] * (1.0 - scale.fraction(tick));

@@ -77,19 +77,23 @@ fn summary(case: &Case, top: f64) -> Value {
 fn state(results: &Path, case: &Case) -> Result<Value, ViewError> {
     let folder = results.join("elastic").join(case.folder());
     let charged = Curve::read(&folder.join("charged.csv"))?;
-    let turn = camera::flattest(&charged.points);
     let row = case.first();
+    let mut shots = snapshots(&folder.join("snapshots.csv"))?;
+    shots.retain(|s| (s.cut - row.cut).abs() < 1e-9);
+    // seen from where both the knot and the released fibre are wide
+    let mut seen: Vec<&[Vector3<f64>]> = vec![&charged.points];
+    seen.extend(shots.last().map(|s| &s.curve.points[..]));
+    let turn = camera::flattest_of(&seen);
     let mut shapes: Vec<(String, Vec<Vector3<f64>>, Vec<f64>)> = vec![(
         "0".to_owned(),
         camera::view(&charged.points, &turn),
         charged.density,
     )];
-    let cut = |s: &&crate::data::Snapshot| (s.cut - row.cut).abs() < 1e-9;
-    for s in snapshots(&folder.join("snapshots.csv"))?.iter().filter(cut) {
+    for s in shots {
         shapes.push((
             text::significant(s.time, 2),
             camera::view(&s.curve.points, &turn),
-            s.curve.density.clone(),
+            s.curve.density,
         ));
     }
     let density = shapes.iter().flat_map(|s| s.2.iter().copied());

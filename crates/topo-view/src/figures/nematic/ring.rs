@@ -64,14 +64,14 @@ pub fn smooth(line: &DefectLine, spacing: f64) -> DefectLine {
     }
 }
 
-/// Uniform cubic B-spline: continuous in curvature.
+/// Catmull-Rom spline through the two middle points.
 fn cubic([a, b, c, d]: [Vector3<f64>; 4], t: f64) -> Vector3<f64> {
     let (t2, t3) = (t * t, t * t * t);
-    (a * (1.0 - 3.0 * t + 3.0 * t2 - t3)
-        + b * (4.0 - 6.0 * t2 + 3.0 * t3)
-        + c * (1.0 + 3.0 * t + 3.0 * t2 - 3.0 * t3)
-        + d * t3)
-        / 6.0
+    (b * 2.0
+        + (c - a) * t
+        + (a * 2.0 - b * 5.0 + c * 4.0 - d) * t2
+        + (b * 3.0 - a - c * 3.0 + d) * t3)
+        * 0.5
 }
 
 /// Length of the line, and of a piece of it.

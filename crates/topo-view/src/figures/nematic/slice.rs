@@ -56,8 +56,12 @@ impl Look<'_> {
             let label = text::number(f64::from(k), 0);
             canvas.text(left - 6.0, cy - d + 0.35 * size, &label, style.end());
         }
-        let top = cy - half_z * self.unit;
-        canvas.text(left - 6.0, top + 0.8 * size, "*z*/*R*", style.end());
+        let upward = Style {
+            upward: true,
+            ..style.middle()
+        };
+        let between = cy - 0.5 * self.radius * self.unit;
+        canvas.text(left - 2.0 * size, between, "*z*/*R*", upward);
     }
 
     /// A sample arrow with its speed, its left end at a place; `size` is that of the type.
