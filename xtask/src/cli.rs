@@ -32,6 +32,7 @@ impl Command {
             Self::Fuzz(_) => "fuzz",
             Self::Test(_) => "test",
             Self::Ci => "ci",
+            Self::Scenes => "scenes",
             Self::Docs => "docs",
             Self::Bench(_) => "bench",
         }
@@ -105,6 +106,8 @@ pub enum Command {
     Test(TestArgs),
     /// Everything that must pass before a change lands: fmt, clippy, docs, packages, tests.
     Ci,
+    /// Write the reference of scene files (docs/scenes.md, docs/scene.schema.json) from the types that read them.
+    Scenes,
     /// Build the site of the documentation into target/site: tutorial, pages, Python API, with search.
     Docs,
     /// Run the benchmarks and print a table.

@@ -9,6 +9,7 @@ mod fuzz;
 mod packages;
 mod python;
 mod record;
+mod scenes;
 mod test;
 mod tradeoff;
 
@@ -39,6 +40,7 @@ pub fn dispatch(cli: Cli) -> Result<ExitCode, CliError> {
         Command::Fuzz(args) => fuzz::run(&args),
         Command::Test(args) => test::run(&args),
         Command::Ci => ci::run(),
+        Command::Scenes => scenes::run(),
         Command::Docs => python::docs(&cargo::target()),
         Command::Bench(args) => bench::run(&args),
     }

@@ -1,5 +1,6 @@
 //! The nematic material: bulk and elastic constants, mobility, flow alignment, viscosity.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use topo_core::{InvalidValue, finite, positive};
 
@@ -17,28 +18,37 @@ use crate::tensor::{Tensor5, contract, square_traceless};
 ///
 /// # References
 /// `patil2020discharging`, `beris1994`
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Material {
-    /// A, in L/xi_N².
+    /// Bulk constant A.
+    #[schemars(extend("x-unit" = "L/xi_N²"), example = -0.1)]
     pub a: f64,
-    /// B, in L/xi_N².
+    /// Bulk constant B.
+    #[schemars(extend("x-unit" = "L/xi_N²"), example = -2.0)]
     pub b: f64,
-    /// C, in L/xi_N².
+    /// Bulk constant C.
+    #[schemars(extend("x-unit" = "L/xi_N²", "exclusiveMinimum" = 0), example = 2.0)]
     pub c: f64,
     /// Elastic constant L: 1 in reduced units.
+    #[schemars(extend("x-unit" = "L", "exclusiveMinimum" = 0), example = 0.9)]
     pub elastic_constant: f64,
-    /// Second elastic constant L_2, in L; leave it out and no term is modelled.
+    /// Second elastic constant L_2, above -3/5 of the first.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("x-unit" = "L", "x-default" = "not modelled"), example = 0.1)]
     pub second_elastic_constant: Option<f64>,
     /// Rotational mobility Gamma, of dQ/dt = Gamma H: 1 in reduced units (called the rotational viscosity parameter by `patil2020discharging`).
+    #[schemars(extend("x-unit" = "Gamma", "exclusiveMinimum" = 0), example = 2.0)]
     pub rotational_mobility: f64,
-    /// Flow alignment chi: no unit.
+    /// Flow alignment chi.
+    #[schemars(extend("x-unit" = "1"), example = 0.5)]
     pub flow_alignment: f64,
-    /// Isotropic viscosity eta, in 1/Gamma.
+    /// Isotropic viscosity eta.
+    #[schemars(extend("x-unit" = "1/Gamma", "exclusiveMinimum" = 0), example = 1.0)]
     pub viscosity: f64,
-    /// Order S at surfaces and of start fields; the equilibrium order when left out.
+    /// Order S at surfaces and of start fields.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("x-unit" = "1", "x-default" = "the equilibrium order", "exclusiveMinimum" = 0), example = 0.5)]
     pub surface_order: Option<f64>,
 }
 
