@@ -94,7 +94,7 @@ pub enum Command {
   cargo xtask determinism                           all that the draft figures draw: three times some minutes
   cargo xtask determinism scenes/elastic-quick.toml    a scene instead")]
     Determinism(DeterminismArgs),
-    /// Feed every parser with made-up files: needs cargo-fuzz.
+    /// Feed every parser with generated files: needs cargo-fuzz.
     #[command(after_help = "Examples:
   cargo xtask fuzz                        ten minutes for each parser
   cargo xtask fuzz --minutes 60 vect xyz  an hour for each of two")]
@@ -108,7 +108,7 @@ pub enum Command {
     Ci,
     /// Write the reference of scene files (docs/scenes.md, docs/scene.schema.json) from the types that read them.
     Scenes,
-    /// Build the site of the documentation into target/site: tutorial, pages, Python API, with search.
+    /// Build the documentation: rustdoc with typeset equations into target/doc, and the site (tutorial, pages, Python API, search) into target/site.
     Docs,
     /// Run the benchmarks and print a table.
     #[command(after_help = "Examples:

@@ -85,8 +85,8 @@ pub(crate) struct AnchoredSurface<'a> {
 impl AnchoredSurface<'_> {
     /// What cell (i, j, k) is.
     ///
-    /// A link of whole length h to the surface at distance θ h has conductance 1/θ; its end stands for the area h² |ν_axis|, so
-    /// that all ends together make up the surface.
+    /// A link of whole length h to the surface at distance θ h has conductance 1/θ; its end represents the area h² |ν_axis|, so
+    /// that all ends together cover the surface.
     pub(crate) fn kind(&self, ijk: [usize; 3]) -> Kind {
         let (grid, particle) = (self.grid, self.particle);
         let h = grid.spacing();

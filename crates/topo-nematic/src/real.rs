@@ -49,10 +49,10 @@ impl Real for f32 {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Precision {
-    /// 8 bytes a number.
+    /// 8 bytes per number.
     #[default]
     Double,
-    /// 4 bytes a number: half the memory traffic, rounding errors of 6e-8 S.
+    /// 4 bytes per number: half the memory traffic, rounding errors of 6e-8 S.
     Single,
 }
 

@@ -20,16 +20,16 @@ enum Class {
     File,
 }
 
-/// What was refused and why, away from the interpreter.
+/// What was refused and why, away from the interpreter; small, as it is the error of most functions here.
 #[derive(Debug, Clone, Default)]
 pub struct Refusal {
     class: Class,
     message: String,
-    file: Option<String>,
+    file: Option<Box<str>>,
     line: Option<usize>,
-    key: Option<String>,
-    value: Option<String>,
-    remedy: Option<String>,
+    key: Option<Box<str>>,
+    value: Option<Box<str>>,
+    remedy: Option<Box<str>>,
 }
 
 impl Refusal {
@@ -38,9 +38,9 @@ impl Refusal {
         let value = value.to_string();
         Self {
             message: format!("{key} = {value}: {remedy}"),
-            key: Some(key.to_owned()),
-            value: Some(value),
-            remedy: Some(remedy.to_owned()),
+            key: Some(key.into()),
+            value: Some(value.into()),
+            remedy: Some(remedy.into()),
             ..Self::default()
         }
     }
@@ -103,7 +103,7 @@ impl From<KnotError> for Refusal {
             _ => Class::Knot,
         };
         let name = match &error {
-            KnotError::UnknownKnot { name, .. } => Some(name.clone()),
+            KnotError::UnknownKnot { name, .. } => Some(name.clone().into()),
             _ => None,
         };
         Self {
@@ -123,16 +123,16 @@ impl From<LabError> for Refusal {
         };
         match error {
             LabError::Scene(fault) => Self {
-                file: Some(fault.file),
+                file: Some(fault.file.into()),
                 line: fault.line,
-                key: Some(fault.key).filter(|key| !key.is_empty()),
-                value: Some(fault.found),
-                remedy: Some(fault.expected),
+                key: Some(fault.key.into()).filter(|key: &Box<str>| !key.is_empty()),
+                value: Some(fault.found.into()),
+                remedy: Some(fault.expected.into()),
                 ..scene
             },
             LabError::SceneName { path, reason } => Self {
-                file: Some(path.display().to_string()),
-                remedy: Some(reason),
+                file: Some(path.display().to_string().into()),
+                remedy: Some(reason.into()),
                 ..scene
             },
             LabError::Option {
@@ -144,8 +144,8 @@ impl From<LabError> for Refusal {
                 ..Self::value(option.trim_start_matches('-'), value, &remedy)
             },
             LabError::Goal { goal, reason } => Self {
-                value: Some(goal),
-                remedy: Some(reason),
+                value: Some(goal.into()),
+                remedy: Some(reason.into()),
                 ..scene
             },
             LabError::Unreadable { source, .. }
@@ -188,11 +188,11 @@ impl Refusal {
             _ => "TopoError",
         };
         let fields = PyDict::new(py);
-        fields.set_item("file", self.file)?;
+        fields.set_item("file", self.file.as_deref())?;
         fields.set_item("line", self.line)?;
-        fields.set_item("key", self.key)?;
-        fields.set_item("value", self.value)?;
-        fields.set_item("remedy", self.remedy)?;
+        fields.set_item("key", self.key.as_deref())?;
+        fields.set_item("value", self.value.as_deref())?;
+        fields.set_item("remedy", self.remedy.as_deref())?;
         let class = py.import("topobatteries.errors")?.getattr(class)?;
         let error = class.call((self.message,), Some(&fields))?;
         Ok(PyErr::from_value(error))

@@ -11,7 +11,7 @@ jsonschema = pytest.importorskip("jsonschema")
 ROOT = Path(__file__).parents[3]
 SCHEMA = json.loads((ROOT / "docs/scene.schema.json").read_text(encoding="utf-8"))
 VALIDATOR = jsonschema.Draft7Validator(SCHEMA)
-BASES = {"rod": {"rod": {"knot": "3_1"}}, "nematic": {"nematic": {}}}
+BASES = {"rod": {"rod": {"knot": "3_1"}}, "nematic": {"nematic": {"field": {"vector": [0, 0, 1], "anisotropy": 1}}}}
 
 
 def merged(into, more):

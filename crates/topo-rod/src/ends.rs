@@ -1,4 +1,4 @@
-//! What holds, moves or loads the ends of an open rod.
+//! How the ends of an open rod are held, moved and loaded.
 
 use nalgebra::Vector3;
 use schemars::JsonSchema;
@@ -23,21 +23,21 @@ pub enum EndCondition {
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct EndMotion {
-    /// Velocity of a held end.
+    /// Velocity of a held end, in h E_b/η.
     #[schemars(extend("x-unit" = "h E_b/η", "examples" = [[0.1, 0.0, 0.0]]))]
     pub velocity: [f64; 3],
-    /// Rotation rate about the end tangent of a clamped end.
+    /// Rotation rate about the end tangent of a clamped end, in E_b/η.
     #[schemars(extend("x-unit" = "E_b/η"), example = 0.1)]
     pub rotation_rate: f64,
-    /// Force on a free end, per area.
+    /// Force on a free end, per area, in E_b.
     #[schemars(extend("x-unit" = "E_b", "examples" = [[0.1, 0.0, 0.0]]))]
     pub force: [f64; 3],
-    /// Torque about the tangent on an end that is not clamped, per area.
+    /// Torque about the tangent on an end that is not clamped, per area, in E_b h.
     #[schemars(extend("x-unit" = "E_b h"), example = 0.1)]
     pub torque: f64,
 }
 
-/// Both ends of an open rod. The default, free and unloaded, costs nothing.
+/// Both ends of an open rod. The default is free and unloaded, at no cost.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Ends {
@@ -50,7 +50,7 @@ pub struct Ends {
 }
 
 impl Ends {
-    /// Checks that loads act on what is free and motions on what is held, and that forces on a free rod balance.
+    /// Checks that loads act on free ends and motions on held ends, and that the forces on a free rod balance.
     ///
     /// # Errors
     /// Names the contradiction.
@@ -112,7 +112,7 @@ impl Ends {
         self.motions != [EndMotion::default(); 2]
     }
 
-    /// Vertices that are held, each with the velocity it is given.
+    /// Vertices that are held, each with its prescribed velocity, in h E_b/η.
     pub fn held_vertices(&self, state: &RodState) -> Vec<(usize, Vector3<f64>)> {
         let last = state.n_vertices() - 1;
         let mut held = Vec::new();
@@ -131,7 +131,7 @@ impl Ends {
         held
     }
 
-    /// Edges whose rotation is held, each with its rate.
+    /// Edges whose rotation is held, each with its prescribed rate, in E_b/η.
     pub fn held_edges(&self, state: &RodState) -> Vec<(usize, f64)> {
         [(0, 0), (1, state.n_edges() - 1)]
             .into_iter()

@@ -1,5 +1,6 @@
 //! The figures: one file each; a new one is a file and a line in [`ALL`].
 
+mod beside;
 mod elastic_charging;
 mod elastic_configurations;
 mod elastic_discharge;

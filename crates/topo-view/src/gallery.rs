@@ -3,7 +3,7 @@
 use crate::data;
 use crate::error::ViewError;
 use crate::figures::Done;
-use crate::movies::Movie;
+use crate::movies::{self, Movie};
 use crate::plot::font;
 use crate::provenance::Provenance;
 use crate::reproduction::{self, Finding};
@@ -25,9 +25,13 @@ dl{background:var(--card);border-radius:6px;padding:.8rem 1rem;margin:1rem 0}dt{
 .files{color:var(--quiet)}table{border-collapse:collapse;display:block;overflow-x:auto}td{padding:.15rem .8rem .15rem 0;vertical-align:top;overflow-wrap:anywhere}td:first-child{white-space:nowrap;color:var(--quiet)}
 ";
 
-/// Writes `index.html` into the results folder: one file that opens from disk.
+/// Writes `index.html` into the results folder: it opens from disk, small, and loads pictures and shapes beside it as they are seen.
 pub fn write(results: &Path, shown: &Page<'_>) -> Result<(), ViewError> {
     let view = viewer::sections(results)?;
+    for d in shown.done {
+        let file = format!("figures/preview/{}.png", d.figure.name);
+        data::write(&results.join(file), &d.preview)?;
+    }
     data::write(
         &results.join("index.html"),
         page(results, shown, &view).as_bytes(),
@@ -114,14 +118,24 @@ fn links(shown: &Page<'_>, view: &str) -> Markup {
     }
 }
 
+/// Width and height of a PNG, from its header.
+fn png_size(png: &[u8]) -> [u32; 2] {
+    let number = |at: usize| {
+        let bytes = png.get(at..at + 4).and_then(|b| b.try_into().ok());
+        bytes.map_or(0, u32::from_be_bytes)
+    };
+    [number(16), number(20)]
+}
+
 fn figure(results: &Path, done: &Done) -> Markup {
     let f = &done.figure;
-    let png = font::base64(&done.preview);
+    // the page keeps their places free, so that pictures further down are loaded when they are reached
+    let [width, height] = png_size(&done.preview);
     html! {
         section id=(f.name) {
             h2 { (f.title) }
             a href={ "figures/" (f.name) ".svg" } {
-                img alt=(f.caption) src={ "data:image/png;base64," (png) };
+                img alt=(f.caption) loading="lazy" width=(width) height=(height) src={ "figures/preview/" (f.name) ".png" };
             }
             (said(f.caption, f.claim, &done.finding))
             p.files {
@@ -140,7 +154,7 @@ fn movie(results: &Path, movie: &Movie, finding: &str) -> Markup {
     html! {
         section id=(movie.name) {
             h2 { (movie.title) }
-            img alt=(movie.caption) loading="lazy" src=(file);
+            img alt=(movie.caption) loading="lazy" width=(movies::SIZE.width) height=(movies::SIZE.height) src=(file);
             (said(movie.caption, movie.claim, finding))
             p.files {
                 "File: " a href=(file) { "animated PNG" }

@@ -6,6 +6,8 @@
 //!
 //! Fonts, scripts and templates are inside the library: nothing is looked for at run time but the results.
 
+#[cfg(test)]
+mod browser;
 pub mod chart;
 pub mod data;
 mod error;

@@ -1,14 +1,17 @@
-//! The moving pictures: one file each, written as animated PNG.
+//! The moving pictures: one file each, written as animated PNG with a palette.
 
 mod apng;
+mod axes;
 mod elastic;
 mod nematic;
+mod palette;
 mod stage;
 
 use crate::data;
 use crate::error::ViewError;
+use stage::RATE;
+pub(crate) use stage::SIZE;
 pub use stage::{Clip, Movie, N_FRAMES, Stage};
-use stage::{RATE, SIZE};
 
 /// Every movie, in the order of the gallery.
 pub const ALL: [Movie; 2] = [elastic::MOVIE, nematic::MOVIE];
@@ -20,4 +23,29 @@ pub fn draw(movie: Movie, stage: &Stage<'_>) -> Result<String, ViewError> {
     let path = stage.results.join(format!("figures/{}.png", movie.name));
     data::write(&path, &bytes)?;
     Ok(clip.finding)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use topo_core::Interrupt;
+    use topo_lab::Preset;
+
+    /// Makes the movies into the folder that `TOPO_LOOK` names.
+    #[test]
+    #[ignore = "for looking at, not for checking"]
+    fn look_at_movies() {
+        let Ok(folder) = std::env::var("TOPO_LOOK") else {
+            return;
+        };
+        let stage = Stage {
+            results: std::path::Path::new(&folder),
+            quality: Preset::Draft,
+            interrupt: &Interrupt::new(),
+            drawn: &|| {},
+        };
+        for movie in ALL {
+            draw(movie, &stage).unwrap();
+        }
+    }
 }

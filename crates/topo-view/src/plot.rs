@@ -15,5 +15,7 @@ pub mod render;
 pub mod smooth;
 pub mod solids;
 pub mod style;
+#[cfg(test)]
+mod tests;
 pub mod text;
 pub mod tube;

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use crate::error::ViewError;
 use crate::plot::canvas::{Canvas, Picture};
-use crate::plot::color::{BLUE, GREEN, INK, PURPLE, QUIET, VERMILION};
+use crate::plot::color::{LINES, QUIET};
 use crate::plot::panel::{Axis, Panel};
 use crate::plot::style::Style;
 use crate::program::program;
@@ -57,7 +57,7 @@ impl<'a> Families<'a> {
 
     fn ink(&self, family: &str) -> &'static str {
         let k = self.0.iter().position(|f| *f == family).unwrap_or(0);
-        [BLUE, VERMILION, GREEN, PURPLE, "#e69f00", INK, "#56b4e9"][k % 7]
+        LINES[k % LINES.len()]
     }
 
     fn draw_legend(&self, canvas: &mut Canvas, foot: f64) {

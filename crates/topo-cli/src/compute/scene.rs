@@ -2,11 +2,12 @@
 
 use std::path::Path;
 
-use super::report::{Failures, Reporter, tell_taken};
+use super::report::{Failures, Reporter, print_taken};
 use super::{by_goal, estimate};
 use crate::batteries::Batteries;
 use crate::error::CliError;
 use crate::output;
+use crate::progress::waiting;
 use topo_lab::{LabError, Options, Sweep, SweepSettings, Swept, read_scene};
 
 /// Runs a user's scene and prints its table; `options` stand above what the file says.
@@ -24,7 +25,8 @@ pub fn scene(
     if let Some(choice) = &choice {
         by_goal::report_choice(choice);
     }
-    estimate::tell(&experiment.stages(settings).map_err(placed)?);
+    let stages = waiting("estimating the work", || experiment.stages(settings));
+    estimate::print(&stages.map_err(placed)?);
     let folder = experiment.results(&settings.out);
     let swept = sweep(&*experiment, settings)?;
     let mut failures = Failures::default();
@@ -38,7 +40,7 @@ pub fn scene(
     for line in swept.lines() {
         say!("{line}");
     }
-    tell_taken(swept.estimate(), swept.wall_seconds());
+    print_taken(swept.estimate(), swept.wall_seconds());
     if let Some(choice) = &choice {
         let reporter = Reporter::new(experiment.label());
         let checked = swept.check(choice, settings, &|event| reporter.report(event))?;

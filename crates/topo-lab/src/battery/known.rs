@@ -23,7 +23,7 @@ pub fn read_scene<B: Battery + ?Sized>(
 /// As [`read_scene`].
 ///
 /// # Validation
-/// `scenes_are_told_by_their_tables`
+/// `scenes_are_known_by_their_tables`
 pub fn parse_scene<B: Battery + ?Sized>(
     batteries: &[&B],
     text: &str,
@@ -109,7 +109,7 @@ mod tests {
     use crate::{Colloid, Elastic};
 
     #[test]
-    fn scenes_are_told_by_their_tables() {
+    fn scenes_are_known_by_their_tables() {
         let batteries: [&dyn Battery; 2] = [&Elastic, &Colloid];
         let parse = |text: &str| {
             let scene = parse_scene(&batteries, text, Path::new("s.toml"));

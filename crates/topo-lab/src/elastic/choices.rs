@@ -314,7 +314,7 @@ mod tests {
     }
 
     #[test]
-    fn cuts_at_one_vertex_are_told() {
+    fn cuts_at_one_vertex_are_reported() {
         assert!(Cuts::All(8).clash(8).is_none() && Cuts::All(9).clash(8).is_some());
         let at = |list: &[f64]| Cuts::At(list.to_vec()).clash(100);
         assert_eq!(at(&[0.0, 0.01, 0.5]), None);

@@ -174,9 +174,10 @@ fn is_settings(map: &Map<String, Value>) -> bool {
     map.contains_key("properties") || map.contains_key("x-table")
 }
 
-/// A comment as one line without the links of Rust.
+/// The first paragraph of a comment as one line, without the links of Rust.
 fn sentence(text: &str) -> String {
-    let words: Vec<&str> = text.split_whitespace().collect();
+    let first = text.split("\n\n").next().unwrap_or_default();
+    let words: Vec<&str> = first.split_whitespace().collect();
     words.join(" ").replace("[`", "`").replace("`]", "`")
 }
 

@@ -10,14 +10,14 @@ use crate::NematicError;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct ChargeSettings {
-    /// Tilts of the start fields: each is relaxed, and the state of least energy kept.
+    /// Tilts of the start fields, in radians: each is relaxed, and the state of least energy kept.
     #[schemars(length(min = 1), extend("x-unit" = "rad", "examples" = [[0.05, -0.05]]))]
     pub seeds: Vec<f64>,
-    /// Direction of the tilt, from x.
+    /// Direction of the tilt, in radians from x.
     #[schemars(extend("x-unit" = "rad"), example = 1.0)]
     pub seed_azimuth: f64,
-    /// Root mean square of the molecular field that counts as converged.
-    #[schemars(extend("x-unit" = "L/xi_N²", "exclusiveMinimum" = 0), example = 1e-7)]
+    /// Root mean square of the molecular field that counts as converged, in L/ξ_N².
+    #[schemars(extend("x-unit" = "L/ξ_N²", "exclusiveMinimum" = 0), example = 1e-7)]
     pub tolerance: f64,
     /// Largest change of the order parameter over 25 steps that counts as converged.
     #[schemars(extend("x-unit" = "1", "exclusiveMinimum" = 0), example = 1e-5)]

@@ -16,9 +16,12 @@ use nalgebra::Vector3;
 pub(super) const FIGURE: Figure = Figure {
     name: "elastic-charging",
     title: "Charging",
-    caption: "Trefoil 3₁ (chiral) and figure-eight 4₁ (achiral). (a) Stored energy and its parts \
-              against twist density, with the charged states above. (b) Energy density along \
-              the fibre at the two opposite largest twists.",
+    caption: "Trefoil 3₁ (chiral) and figure-eight 4₁ (achiral). (a) Stored energy E and its parts \
+              against the twist density θ′h (θ′: angle of twist per length, h: radius of the fibre), \
+              with the charged states above; E_0 = E_b h² L, with the bending modulus E_b and the length \
+              L of the fibre. (b) Energy density w along the fibre at the \
+              two opposite largest twists. Writhe: signed self-crossings, averaged over all directions \
+              of view.",
     claim: "Stored energy depends on knot type and twist; the trefoil buckles differently for the \
             two hands of twist, the figure-eight does not.",
     table: "elastic/sweep.csv",

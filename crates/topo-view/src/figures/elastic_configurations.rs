@@ -14,9 +14,10 @@ use rayon::prelude::*;
 pub(super) const FIGURE: Figure = Figure {
     name: "elastic-configurations",
     title: "Charged states",
-    caption: "Every charged state: a closed fibre tied into one of 14 knots (rows) and fused with \
-              one of 17 twist densities (columns), relaxed. Colour is the elastic energy per unit \
-              length; all tubes have one scale, and neighbours in a row are turned alike.",
+    caption: "Every charged state: a closed fibre of radius h tied into one of 14 knots (rows) and fused \
+              with one of 17 twist densities θ′h (columns; θ′ is the angle of twist per length), \
+              relaxed. Colour is the elastic energy w per unit length in E_b h², with \
+              the bending modulus E_b; all tubes have one scale, and neighbours in a row are turned alike.",
     claim: "238 initial configurations, 17 twist densities for 14 knot types.",
     table: "elastic/sweep.csv",
     draw,

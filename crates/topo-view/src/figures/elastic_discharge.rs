@@ -5,22 +5,24 @@ mod snapshots;
 mod times;
 
 use super::figure::{Context, Drawn, Figure, face};
-use super::series::{OTHERS, Table, bounds, color, labels, line, log_bounds, step};
-use crate::data::Sweep;
+use super::series::{
+    Chosen, KEY_HEIGHT, Table, bounds, knot_curve, knot_key, line, log_bounds, step,
+};
+use crate::data::{Case, Sweep};
 use crate::error::ViewError;
 use crate::plot::canvas::Canvas;
-use crate::plot::color::QUIET;
 use crate::plot::panel::{Axis, Panel};
-use crate::plot::style::Style;
-use crate::plot::text;
 
 pub(super) const FIGURE: Figure = Figure {
     name: "elastic-discharge",
     title: "Discharging",
-    caption: "(a) A fast and a slow untying at zero twist, after the cut; times in T₀. (b) Energy \
-              at the cut against twist. (c) Elastic energy against time with the knot type of the \
-              closed-up fibre as bands. (d) Time to release 99 % against twist; bars span the \
-              near-tied cuts. (e) The same time for all states, in each knot by twist.",
+    caption: "(a) A fast and a slow untying at zero twist, after the cut; times in T_0 = 2 L η/(h E_b), with \
+              length L, radius h, viscosity η and bending modulus E_b of the fibre. (b) Energy E before \
+              the cut against the twist density θ′h, in E_0 = E_b h² L. (c) Elastic energy over that \
+              before the cut, E(0), against time: solid, the state at zero twist, the area below it \
+              shaded by the knot type of its closed-up fibre, named above; dashed, the same knot \
+              strongly twisted. (d) t99, the time in which 99 % of E(0) is released, against twist; \
+              bars span the near-tied cuts. (e) The same time for all states, in each knot by twist.",
     claim: "At low twist the stored energy depends on the knot, at high twist it does not. Energy \
             is released in phases as intermediate knots form and untie; 3₁ and 7₄ are slow at zero \
             twist, and strongly twisted states discharge faster.",
@@ -35,11 +37,27 @@ fn draw(context: &Context) -> Result<Drawn, ViewError> {
     canvas.letter(8.0, 18.0, "a");
     let bar = snapshots::draw(context, &sweep, &mut canvas, [10.0, 8.0], [700.0, 230.0])?;
     canvas.letter(8.0, 264.0, "b");
-    initial_energy(&sweep, &mut canvas, [52.0, 258.0], &mut table);
+    let energies = sweep.cases.iter().map(|c| c.first().energy);
+    let axis = Axis::log("Initial energy *E* / *E*_{0}", log_bounds(energies, 1.35));
+    let energy: Quantity = |c| Some([c.first().energy; 3]);
+    against_twist(
+        &sweep,
+        &mut canvas,
+        ([52.0, 258.0], "b"),
+        (axis, energy),
+        &mut table,
+    );
     canvas.letter(376.0, 264.0, "c");
     let path = phases::draw(context, &sweep, &mut canvas, [422.0, 258.0], &mut table)?;
     canvas.letter(8.0, 496.0, "d");
-    times::against_twist(&sweep, &mut canvas, [52.0, 490.0], &mut table);
+    let axis = times::time_axis(&sweep);
+    against_twist(
+        &sweep,
+        &mut canvas,
+        ([52.0, 490.0], "d"),
+        (axis, times::t99),
+        &mut table,
+    );
     canvas.letter(376.0, 496.0, "e");
     times::all(&sweep, &mut canvas, [422.0, 490.0], &mut table);
     canvas.footnote(&face(&sweep, context.quality));
@@ -62,57 +80,44 @@ fn twist_axis(sweep: &Sweep) -> Axis {
     )
 }
 
-/// Knots in drawing order: the grey ones first, so that the picked-out ones lie on top.
-fn drawing_order(sweep: &Sweep) -> Vec<&str> {
-    let mut knots = sweep.knots();
-    knots.sort_by_key(|k| color(k).is_some());
-    knots
-}
+/// Size of the panels (b) and (d).
+const SIZE: [f64; 2] = [266.0, 178.0];
 
-fn initial_energy(sweep: &Sweep, canvas: &mut Canvas, at: [f64; 2], table: &mut Table) {
-    let range = log_bounds(sweep.cases.iter().map(|c| c.first().energy), 1.35);
+/// A quantity of a state: mean, smallest and largest over its cuts, where it is known.
+type Quantity = fn(&Case) -> Option<[f64; 3]>;
+
+/// A quantity against twist by knot, with a bar where the cuts of a state differ.
+fn against_twist(
+    sweep: &Sweep,
+    canvas: &mut Canvas,
+    (at, letter): ([f64; 2], &str),
+    (y, quantity): (Axis, Quantity),
+    table: &mut Table,
+) {
     let panel = Panel {
         at,
-        size: [266.0, 178.0],
+        size: SIZE,
         x: twist_axis(sweep),
-        y: Axis::log("Initial energy *E* / *E*_{0}", range),
+        y: y.with_room(KEY_HEIGHT, SIZE[1]),
     };
-    let mut plots = Vec::new();
-    let mut names = Vec::new();
-    for knot in drawing_order(sweep) {
-        let points: Vec<(f64, f64)> = sweep
-            .of(knot)
-            .iter()
-            .map(|c| (c.first().twist, c.first().energy))
-            .collect();
-        for (x, y) in &points {
-            table.row(&["b", knot], &[*x, *x, *y, *y, *y]);
+    let mut knots = sweep.knots();
+    let mut plots = knot_key(&panel, canvas, &knots);
+    // The grey ones first, so that the picked-out ones lie on top.
+    knots.sort_by_key(|k| Chosen::of(k).is_some());
+    for knot in knots {
+        let mut points = Vec::new();
+        for case in sweep.of(knot) {
+            let Some([mean, low, high]) = quantity(case) else {
+                continue;
+            };
+            let x = case.first().twist;
+            points.push((x, mean));
+            table.row(&[letter, knot], &[x, x, mean, low, high]);
+            if let Some(chosen) = Chosen::of(knot).filter(|_| high > low * 1.005) {
+                plots.push(line(vec![(x, low), (x, high)], chosen.color, 1.0));
+            }
         }
-        let middle = points.iter().min_by(|a, b| a.0.abs().total_cmp(&b.0.abs()));
-        if let (Some(ink), Some((x, y))) = (color(knot), middle) {
-            names.push((panel.place(*x, *y)[1], text::knot_name(knot), ink));
-        }
-        plots.push(line(
-            points,
-            color(knot).unwrap_or(OTHERS),
-            if color(knot).is_some() { 1.8 } else { 1.0 },
-        ));
+        plots.extend(knot_curve(knot, points));
     }
     panel.draw(canvas, plots, &[]);
-    // Names stand where the curves differ most: beside the middle.
-    let x = panel.place(0.0, 1.0)[0] + 42.0;
-    for (y, _, ink) in &names {
-        canvas.line([x - 40.0, *y], [x - 16.0, *y], ink, 0.6);
-    }
-    labels(canvas, x - 12.0, names);
-    others_note(canvas, &panel, sweep);
-}
-
-fn others_note(canvas: &mut Canvas, panel: &Panel, sweep: &Sweep) {
-    let n = sweep.knots().iter().filter(|k| color(k).is_none()).count();
-    if n > 0 {
-        let at = [panel.at[0] + 8.0, panel.at[1] + panel.size[1] - 8.0];
-        let note = format!("grey: the other {n} knots");
-        canvas.text(at[0], at[1], &note, Style::default().size(8.5).color(QUIET));
-    }
 }

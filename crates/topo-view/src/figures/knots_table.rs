@@ -5,7 +5,7 @@ use super::series::{Table, bounds};
 use crate::data::{Curve, KnotRow, read_csv};
 use crate::error::ViewError;
 use crate::plot::canvas::{Canvas, tube_and_rods_png};
-use crate::plot::color::Scale;
+use crate::plot::color::{INK, Scale};
 use crate::plot::raster::Rods;
 use crate::plot::style::Style;
 use crate::plot::tube::Tube;
@@ -20,7 +20,8 @@ pub(super) const FIGURE: Figure = Figure {
     title: "Tight knots",
     caption: "The tightest shapes that the code finds for each knot, as tubes of radius 1 on one \
               scale, coloured by curvature (1 is the bound that a solid tube sets), and their \
-              numbers beside the published ropelengths.",
+              numbers beside the published ropelengths L/r, length over radius. Columns are explained \
+              below the table.",
     claim: "Ideal knots are the starting shapes; published ropelengths are the outside truth.",
     table: "knots/table.csv",
     draw,
@@ -39,6 +40,9 @@ const SLACK: f64 = 5e-3;
 /// Struts shown per unit of length along a line of contact.
 const STRUTS_PER_UNIT: f64 = 2.0;
 
+/// Left end of the bars of the table, and length of the longest.
+const BARS: [f64; 2] = [612.0, 86.0];
+
 /// Points of a knot turned to the reader.
 type View = Vec<Vector3<f64>>;
 
@@ -56,7 +60,7 @@ fn draw(context: &Context) -> Result<Drawn, ViewError> {
     }
     let n_lines = rows.len().div_ceil(COLUMNS);
     let pictures = CELL[1] * n_lines as f64;
-    let n_notes = if context.struts { 2.0 } else { 1.0 };
+    let n_notes = if context.struts { 4.0 } else { 3.0 };
     let height = 8.0 + pictures + 44.0 + 14.0 * rows.len() as f64 + 14.0 + 12.0 * n_notes;
     let mut canvas = Canvas::new(720.0, height, 4.0 * context.detail);
     let scale = Scale::viridis(0.0, 1.0);
@@ -69,10 +73,14 @@ fn draw(context: &Context) -> Result<Drawn, ViewError> {
         "Curvature κ*r*",
     );
     numbers(&mut canvas, &rows, 8.0 + pictures + 26.0);
-    let mut notes = vec![format!(
-        "{} quality. *L*/*r*: length of the centreline over the radius of the thickest tube that fits around it. Strut: touching pair; kink: vertex at the curvature bound.",
-        context.quality
-    )];
+    let mut notes = vec![
+        format!(
+            "{} quality. *L*/*r*: length of the centreline over the radius of the thickest tube that fits around it (ropelength). Excess: over the published *L*/*r*, as number and as bar.",
+            context.quality
+        ),
+        "Writhe: signed crossings, mean crossings: crossings without sign, both averaged over all directions of view. Strut: a pair of touching points; kink: a vertex at the bound of curvature.".to_owned(),
+        "Determinant and signature: invariants of the knot type, computed from the tight shape.".to_owned(),
+    ];
     if context.struts {
         notes.push(STRUT_NOTE.to_owned());
     }
@@ -179,22 +187,25 @@ fn table(rows: &[KnotRow]) -> Table {
 fn numbers(canvas: &mut Canvas, rows: &[KnotRow], top: f64) {
     let columns: [(&str, f64); 11] = [
         ("Knot", 40.0),
-        ("Vertices", 104.0),
-        ("*L*/*r*", 166.0),
-        ("published", 236.0),
-        ("excess (%)", 304.0),
-        ("writhe", 362.0),
-        ("mean crossings", 446.0),
-        ("struts", 494.0),
-        ("kinks", 538.0),
-        ("det", 576.0),
-        ("signature", 636.0),
+        ("Vertices", 92.0),
+        ("*L*/*r*", 142.0),
+        ("*L*/*r* published", 226.0),
+        ("Excess (%)", 286.0),
+        ("Writhe", 328.0),
+        ("Mean crossings", 404.0),
+        ("Struts", 442.0),
+        ("Kinks", 476.0),
+        ("Determinant", 540.0),
+        ("Signature", 592.0),
     ];
+    let header = Style::default().bold().size(9.5);
     for (name, x) in columns {
-        canvas.text(x, top, name, Style::default().end().bold().size(9.5));
+        canvas.text(x, top, name, header.end());
     }
-    canvas.line([14.0, top + 5.0], [706.0, top + 5.0], "#1b1f24", 0.8);
     let (_, worst) = bounds(rows.iter().map(excess));
+    let bar_header = format!("Excess, 0 to {} %", text::significant(worst, 2));
+    canvas.text(BARS[0], top, &bar_header, header);
+    canvas.line([14.0, top + 5.0], [706.0, top + 5.0], INK, 0.8);
     for (i, r) in rows.iter().enumerate() {
         let y = top + 17.0 + 14.0 * i as f64;
         if i % 2 == 1 {
@@ -219,7 +230,7 @@ fn numbers(canvas: &mut Canvas, rows: &[KnotRow], top: f64) {
         }
         let share = (excess(r) / worst.max(1e-9)).clamp(0.0, 1.0);
         if share.is_finite() {
-            canvas.rect([650.0, y - 7.0], [1.0 + 50.0 * share, 6.5], "#5b8fb9");
+            canvas.rect([BARS[0], y - 7.0], [1.0 + BARS[1] * share, 6.5], "#5b8fb9");
         }
     }
 }

@@ -2,6 +2,7 @@
 
 pub mod charging;
 pub mod discharge;
+pub mod ring;
 pub mod slice;
 
 use super::series::step;
@@ -10,7 +11,6 @@ use crate::plot::canvas::Canvas;
 use crate::plot::color::{QUIET, Rgb, Scale};
 use crate::plot::panel::{Axis, Panel};
 use crate::plot::solids::{Solids, view};
-use crate::plot::style::Style;
 use nalgebra::Vector3;
 use topo_analysis::Flow;
 use topo_analysis::buckling;
@@ -19,7 +19,7 @@ use topo_lab::Preset;
 /// Colour of director rods.
 const ROD: Rgb = [120, 160, 110];
 /// Colour of a defect line without a known profile.
-const UNKNOWN: Rgb = [150, 150, 150];
+pub const UNKNOWN: Rgb = [150, 150, 150];
 
 /// Colours of the profile angle, from +1/2 (0 degrees) over twisted (90) to −1/2 (180).
 pub fn profile_scale() -> Scale {
@@ -28,20 +28,14 @@ pub fn profile_scale() -> Scale {
 
 /// Flat colour bar of the profile angle, labelled below at a size of type.
 pub fn profile_bar(canvas: &mut Canvas, at: [f64; 2], size: [f64; 2], type_size: f64) {
-    const N: usize = 60;
-    let scale = profile_scale();
-    let width = size[0] / N as f64;
-    for k in 0..N {
-        let angle = scale.value((k as f64 + 0.5) / N as f64);
-        let x = at[0] + width * k as f64;
-        // A little wider, so that no gap shines through.
-        canvas.rect([x, at[1]], [width + 0.3, size[1]], &scale.css(angle));
-    }
-    let style = Style::default().middle().size(type_size);
-    let line = at[1] + size[1] + 1.1 * type_size;
-    for (part, label) in [(0.0, "+½"), (0.5, "twisted"), (1.0, "−½")] {
-        canvas.text(at[0] + size[0] * part, line, label, style);
-    }
+    let ticks = [(0.0, "+½"), (90.0, "twisted"), (180.0, "−½")];
+    canvas.flat_bar(at, size, &profile_scale(), &ticks, type_size);
+}
+
+/// Flat colour bar of the particle.
+pub fn particle_bar(canvas: &mut Canvas, at: [f64; 2], size: [f64; 2], type_size: f64) {
+    let ticks = [(-1.0, "−1"), (0.0, "0"), (1.0, "1")];
+    canvas.flat_bar(at, size, &Scale::blue_to_yellow(), &ticks, type_size);
 }
 
 /// The particle, coloured from blue to yellow by the horizontal component cos qφ sin θ of its anchoring.
@@ -79,13 +73,15 @@ pub fn colloid_at(
         None => solids.sphere(Vector3::zeros(), radius, [205, 209, 214]),
     }
     let scale = profile_scale();
+    let thick = 0.055 * radius;
     for line in lines {
+        let line = ring::smooth(line, 0.3 * thick);
         let colors: Vec<Rgb> = line
             .angles
             .iter()
             .map(|a| a.map_or(UNKNOWN, |a| scale.rgb(a)))
             .collect();
-        solids.line(&line.points, &colors, line.closed, 0.055 * radius);
+        solids.line(&line.points, &colors, line.closed, thick);
     }
     if let Some(slice) = slice {
         rods(&mut solids, slice, radius);
@@ -168,7 +164,7 @@ pub fn face(sweep: &NematicSweep, quality: Preset) -> Vec<String> {
             first.spacing
         ),
         format!(
-            "Particle surface by {}, periodic sides, perpendicular plates; energies in *L*ξ_{{N}}, times in τ_{{N}} or *R*^{{2}}/Γ*L*.",
+            "Particle surface by {}, periodic sides, perpendicular plates. ξ_{{N}}: nematic correlation length, *L*: elastic constant, Γ: rotational mobility; τ_{{N}} = ξ_{{N}}^{{2}}/Γ*L*.",
             first.boundary
         ),
     ]

@@ -1,25 +1,103 @@
 //! What the panels share: the chosen knots and their colours, lines, ranges, tidy labels.
 
 use crate::plot::canvas::Canvas;
-use crate::plot::color::{BLUE, GREEN, PURPLE, VERMILION};
+use crate::plot::color::{BLUE, INK, SKY, VERMILION};
+use crate::plot::panel::Panel;
 use crate::plot::style::Style;
-use kuva::prelude::{LinePlot, Plot};
+use crate::plot::text::knot_name;
+use kuva::prelude::{LinePlot, MarkerShape, Plot, ScatterPlot};
 use std::fmt::Write;
 
-/// Knots that are picked out, with their colours; the others stay grey.
-pub const CHOSEN: [(&str, &str); 4] = [
-    ("3_1", BLUE),
-    ("4_1", VERMILION),
-    ("7_1", GREEN),
-    ("7_4", PURPLE),
+/// Looks of a knot that is picked out.
+#[derive(Debug, Clone, Copy)]
+pub struct Chosen {
+    /// Its name.
+    pub knot: &'static str,
+    /// Colour of its line.
+    pub color: &'static str,
+    /// Shape of its points.
+    pub marker: MarkerShape,
+}
+
+/// Knots that are picked out; the others stay grey.
+pub const CHOSEN: [Chosen; 4] = [
+    Chosen::new("3_1", BLUE, MarkerShape::Circle),
+    Chosen::new("4_1", VERMILION, MarkerShape::Square),
+    Chosen::new("7_1", SKY, MarkerShape::Triangle),
+    Chosen::new("7_4", INK, MarkerShape::Diamond),
 ];
 
 /// Grey of the knots that are not picked out.
 pub const OTHERS: &str = "#c3c8ce";
 
-/// Colour of a picked-out knot.
-pub fn color(knot: &str) -> Option<&'static str> {
-    CHOSEN.iter().find(|(k, _)| *k == knot).map(|(_, c)| *c)
+impl Chosen {
+    const fn new(knot: &'static str, color: &'static str, marker: MarkerShape) -> Self {
+        Self {
+            knot,
+            color,
+            marker,
+        }
+    }
+
+    /// The looks of a knot, if it is picked out.
+    pub fn of(knot: &str) -> Option<&'static Self> {
+        CHOSEN.iter().find(|c| c.knot == knot)
+    }
+
+    fn points(&self, points: Vec<(f64, f64)>) -> Plot {
+        Plot::Scatter(
+            ScatterPlot::new()
+                .with_data(points)
+                .with_color(self.color)
+                .with_marker(self.marker)
+                .with_size(2.4),
+        )
+    }
+}
+
+/// The curve of a knot: with points where it is picked out, grey and thin where not.
+pub fn knot_curve(knot: &str, points: Vec<(f64, f64)>) -> Vec<Plot> {
+    match Chosen::of(knot) {
+        Some(chosen) => vec![
+            line(points.clone(), chosen.color, 1.5),
+            chosen.points(points),
+        ],
+        None => vec![line(points, OTHERS, 1.0)],
+    }
+}
+
+/// Height that [`knot_key`] needs at the top of a panel.
+pub const KEY_HEIGHT: f64 = 20.0;
+
+/// Which curve is which knot, in one line at the top of a panel: samples, to be drawn with the panel's plots, and their names.
+pub fn knot_key(panel: &Panel, canvas: &mut Canvas, knots: &[&str]) -> Vec<Plot> {
+    const FROM_TOP: f64 = 11.0;
+    let y = panel.y.value(1.0 - FROM_TOP / panel.size[1]);
+    let mut plots = Vec::new();
+    let mut left = 9.0;
+    let mut sample = |plot: &dyn Fn(Vec<(f64, f64)>) -> Vec<Plot>, name: &str, width: f64| {
+        let [from, middle, to] =
+            [0.0, 7.5, 15.0].map(|d| (panel.x.value((left + d) / panel.size[0]), y));
+        plots.extend(plot(vec![from, middle, to]));
+        let at = [panel.at[0] + left + 19.0, panel.at[1] + FROM_TOP + 3.2];
+        canvas.text(at[0], at[1], name, Style::default().size(9.5));
+        left += width;
+    };
+    for chosen in CHOSEN.iter().filter(|c| knots.contains(&c.knot)) {
+        let curve = |p: Vec<(f64, f64)>| {
+            vec![
+                line(vec![p[0], p[2]], chosen.color, 1.5),
+                chosen.points(vec![p[1]]),
+            ]
+        };
+        sample(&curve, &knot_name(chosen.knot), 42.0);
+    }
+    let n_others = knots.iter().filter(|k| Chosen::of(k).is_none()).count();
+    if n_others > 0 {
+        let curve = |p: Vec<(f64, f64)>| vec![line(p, OTHERS, 1.0)];
+        sample(&curve, &format!("{n_others} other knots"), 0.0);
+    }
+    plots
 }
 
 /// A line.
@@ -170,11 +248,13 @@ mod tests {
             .collect();
         labels(&mut canvas, 10.0, items);
         let svg = canvas.finish().unwrap().svg;
-        let ys: Vec<f64> = svg
+        let mut ys: Vec<f64> = svg
             .split("<text x=\"10.00\" y=\"")
             .skip(1)
             .map(|s| s[..s.find('"').unwrap()].parse().unwrap())
             .collect();
+        // each lies on a rim of its own
+        ys.dedup();
         assert!(
             ys.len() == 4 && ys.windows(2).all(|w| w[1] - w[0] > 10.0),
             "{ys:?}"
@@ -183,6 +263,6 @@ mod tests {
 
     #[test]
     fn picked_out_knots_are_in_the_table() {
-        assert!(CHOSEN.iter().all(|(k, _)| crate::data::KNOTS.contains(k)));
+        assert!(CHOSEN.iter().all(|c| crate::data::KNOTS.contains(&c.knot)));
     }
 }

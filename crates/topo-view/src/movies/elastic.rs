@@ -1,11 +1,12 @@
 //! Four knots untying side by side, each from its charged state to a released fibre, on a logarithmic clock.
 
+use super::axes::Axes;
 use super::stage::{Clip, Movie, N_FRAMES, Stage};
 use crate::error::ViewError;
-use crate::figures::series::line_path;
 use crate::plot::camera;
 use crate::plot::canvas::Canvas;
-use crate::plot::color::{INK, QUIET, Scale, VERMILION};
+use crate::plot::color::Scale;
+use crate::plot::panel::Axis;
 use crate::plot::style::Style;
 use crate::plot::text;
 use crate::plot::tube::Tube;
@@ -16,8 +17,10 @@ use topo_lab::{ElasticScene, ShapeFrame, discharge_frames, tight_shapes};
 pub const MOVIE: Movie = Movie {
     name: "movie-elastic",
     title: "Knots untying",
-    caption: "Four charged knots after the cut, coloured by energy density, with their elastic \
-              energy; time runs logarithmically, the same for all.",
+    caption: "Four charged knots after the cut, coloured by energy density w up to the w_0 of each, with \
+              their elastic energy E; time t runs logarithmically, the same for all. T_0 = 2 L η/(h E_b) \
+              and E_0 = E_b h² L, with length L, radius h, viscosity η and bending modulus E_b of the \
+              fibre; θ′h: angle of twist per radius.",
     claim: "The relaxation dynamics depend strongly on knot type and twist.",
     battery: "elastic",
     clip,
@@ -32,6 +35,8 @@ const FIRST: f64 = 0.01;
 
 struct Actor {
     label: String,
+    /// End of its colour scale.
+    high: String,
     frames: Vec<ShapeFrame>,
     views: Vec<Vec<Vector3<f64>>>,
     scale: Scale,
@@ -74,6 +79,7 @@ fn clip(stage: &Stage<'_>) -> Result<Clip, ViewError> {
             &label,
             Style::default().middle().bold().size(20.0),
         );
+        color_key(canvas);
         for (q, actor) in actors.iter().enumerate() {
             let corner = [480.0 * (q % 2) as f64, 36.0 + 342.0 * (q / 2) as f64];
             actor.draw(canvas, corner, now, last)?;
@@ -86,6 +92,20 @@ fn clip(stage: &Stage<'_>) -> Result<Clip, ViewError> {
         .collect::<Vec<_>>()
         .join(" ");
     Ok(Clip { frames, finding })
+}
+
+/// The colour bar that all share, each with its own w_0.
+fn color_key(canvas: &mut Canvas) {
+    let ticks = [(0.0, "0"), (0.25, "*w*_{0}/4"), (1.0, "*w*_{0}")];
+    canvas.flat_bar(
+        [760.0, 8.0],
+        [170.0, 10.0],
+        &Scale::viridis_root(1.0),
+        &ticks,
+        12.0,
+    );
+    let style = Style::default().end().size(13.0);
+    canvas.text(750.0, 18.0, "Energy density *w*", style);
 }
 
 impl Actor {
@@ -105,6 +125,10 @@ impl Actor {
         let high = density[density.len() * 97 / 100].max(1e-12);
         Ok(Self {
             label: format!("{}, θ′*h* = {}", text::knot_name(knot), text::signed(twist)),
+            high: format!(
+                "*w*_{{0}} = {} *E*_{{b}}*h*^{{2}}",
+                text::significant(high, 2)
+            ),
             frames,
             views,
             scale: Scale::viridis_root(high),
@@ -130,7 +154,7 @@ impl Actor {
         let unit = (0..=k)
             .map(|i| {
                 let [x0, y0, x1, y1] = camera::extent(&self.views[i]);
-                (440.0 / (x1 - x0 + 3.0)).min(250.0 / (y1 - y0 + 3.0))
+                (440.0 / (x1 - x0 + 3.0)).min(232.0 / (y1 - y0 + 3.0))
             })
             .fold(14.0, f64::min);
         let [x0, y0, x1, y1] = camera::extent(view);
@@ -139,43 +163,51 @@ impl Actor {
                 reason: format!("{} is no curve", self.label),
             })?;
         let middle = [(x0 + x1) / 2.0, (y0 + y1) / 2.0];
-        canvas.tube(corner, [480.0, 262.0], middle, unit, &tube)?;
+        canvas.tube(corner, [480.0, 244.0], middle, unit, &tube)?;
         let style = Style::default().bold().size(16.0);
         canvas.text(corner[0] + 16.0, corner[1] + 18.0, &self.label, style);
-        self.draw_energy(canvas, [corner[0] + 16.0, corner[1] + 270.0], k, last);
+        let style = Style::default().size(13.0);
+        canvas.text(corner[0] + 16.0, corner[1] + 36.0, &self.high, style);
+        self.draw_energy(
+            canvas,
+            [corner[0] + 58.0, corner[1] + 250.0],
+            (k, time),
+            last,
+        );
         Ok(())
     }
 
     /// Energy against the logarithm of time, with a dot for now.
-    fn draw_energy(&self, canvas: &mut Canvas, at: [f64; 2], now: usize, last: f64) {
-        let (width, height) = (448.0, 52.0);
+    fn draw_energy(
+        &self,
+        canvas: &mut Canvas,
+        at: [f64; 2],
+        (now, time): (usize, Option<f64>),
+        last: f64,
+    ) {
+        let size = [400.0, 52.0];
         let top = self.frames[0].energy.max(1e-12);
-        let place = |f: &ShapeFrame| {
-            let t = f.time.unwrap_or(FIRST).max(FIRST);
-            [
-                at[0] + width * (t / FIRST).ln() / (last / FIRST).ln(),
-                at[1] + height * (1.0 - f.energy / top),
-            ]
+        let ticks = [0.0, top].map(|e| (e, text::significant(e, 2)));
+        let axes = Axes {
+            at,
+            size,
+            time: Axis::log("*t* / *T*_{0}", (FIRST, last)),
+            value: Axis::linear("*E* / *E*_{0}", (0.0, top), top),
+            ticks: &ticks,
+            type_size: 12.0,
         };
-        canvas.line(
-            [at[0], at[1] + height],
-            [at[0] + width, at[1] + height],
-            QUIET,
-            0.8,
-        );
-        let path: Vec<[f64; 2]> = self.frames.iter().map(place).collect();
-        line_path(canvas, &path, QUIET, 1.0);
-        line_path(canvas, &path[..=now], INK, 2.0);
-        let [x, y] = path[now];
-        canvas.raw(&format!(
-            r#"<circle cx="{x:.2}" cy="{y:.2}" r="4" fill="{VERMILION}"/>"#
-        ));
+        let curve: Vec<(f64, f64)> = self
+            .frames
+            .iter()
+            .map(|f| (f.time.unwrap_or(FIRST), f.energy))
+            .collect();
+        axes.draw(canvas, &curve, now, time.unwrap_or(FIRST).min(last));
         let label = format!(
             "*E*/*E*_{{0}} = {}",
             text::number(self.frames[now].energy, 3)
         );
         let style = Style::default().end().size(13.0).halo();
-        canvas.text(at[0] + width, at[1] + 14.0, &label, style);
+        canvas.text(at[0] + size[0], at[1] + 12.0, &label, style);
     }
 
     fn finding(&self) -> String {

@@ -1,13 +1,15 @@
 //! A colloid discharging with flow: ring and director in three dimensions, the central plane beside it, on a logarithmic clock.
 
+use super::axes::Axes;
 use super::stage::{Clip, Movie, N_FRAMES, Stage};
 use crate::data::{DefectLine, Slice};
 use crate::error::ViewError;
 use crate::figures::nematic::slice::{self, Look};
-use crate::figures::nematic::{colloid_at, profile_bar};
-use crate::figures::series::line_path;
+use crate::figures::nematic::{colloid_at, particle_bar, profile_bar};
+use crate::figures::series::log_bounds;
 use crate::plot::canvas::Canvas;
-use crate::plot::color::{INK, QUIET, Scale, VERMILION};
+use crate::plot::color::Scale;
+use crate::plot::panel::Axis;
 use crate::plot::style::Style;
 use crate::plot::text;
 use nalgebra::Vector3;
@@ -19,8 +21,10 @@ pub const MOVIE: Movie = Movie {
     title: "A colloid discharging",
     caption: "Left: the particle, its defect ring coloured by cross-section from +½ (dark) to −½ \
               (bright), and the director in the plane through the centre. Right: that plane with \
-              director (green), velocity (arrows) and vorticity (colour), each scaled to its \
-              present maximum. Below: free energy; time runs logarithmically.",
+              director (green), velocity (arrows), vorticity ω_y (colour, up to the ω_0 of the moment) and \
+              defect line (red); lengths in the radius R of the particle. Below: free energy F in L ξ_N \
+              against the time t since the switch in R²/ΓL, with elastic constant L, rotational mobility \
+              Γ, nematic correlation length ξ_N, τ_N = ξ_N²/ΓL.",
     claim: "After the anchoring is switched off the ring shrinks onto the particle and vanishes; \
             the reorientation drives a flow that changes direction.",
     battery: "nematic",
@@ -31,6 +35,8 @@ pub const MOVIE: Movie = Movie {
 const Q: u32 = 4;
 /// The first frames show the charged state.
 const N_STILL: usize = 12;
+/// Azimuth and height of the eye, in degrees: it stays where it is, so that only what changes moves.
+const EYE: [f64; 2] = [-75.0, 20.0];
 /// First time shown after the switch, in R²/(Γ L).
 const FIRST: f64 = 1e-4;
 
@@ -80,7 +86,7 @@ fn clip(stage: &Stage<'_>) -> Result<Clip, ViewError> {
         let part = k.saturating_sub(N_STILL) as f64 / (N_FRAMES - 1 - N_STILL) as f64;
         (k >= N_STILL).then(|| FIRST * (last / FIRST).powf(part))
     };
-    let frames = stage.frames(|k, canvas| play.draw(canvas, k, time(k), last))?;
+    let frames = stage.frames(|k, canvas| play.draw(canvas, time(k), last))?;
     Ok(Clip {
         frames,
         finding: play.finding(),
@@ -89,11 +95,6 @@ fn clip(stage: &Stage<'_>) -> Result<Clip, ViewError> {
 
 impl Shot {
     fn new(frame: NematicFrame, radius: f64) -> Self {
-        let outside = frame.plane.iter().filter(|p| p.x.hypot(p.z) > radius);
-        let speeds = outside.filter_map(|p| Some(p.ux?.hypot(p.uz?)));
-        let speed = speeds.fold(0.0, f64::max);
-        let turns = frame.plane.iter().filter_map(|p| p.vorticity);
-        let vorticity = turns.map(f64::abs).fold(0.0, f64::max);
         let above = frame
             .plane
             .iter()
@@ -109,17 +110,18 @@ impl Shot {
                 .collect(),
             angles: frame.ring.iter().map(|p| p.angle).collect(),
         });
+        let plane = Slice {
+            time: frame.time,
+            points: frame.plane,
+        };
         Self {
             time: frame.time,
             energy: frame.energy,
             ring: ring.filter(|r| r.points.len() > 2),
             lift: lifts.iter().sum::<f64>() / lifts.len().max(1) as f64,
-            plane: Slice {
-                time: frame.time,
-                points: frame.plane,
-            },
-            speed,
-            vorticity,
+            speed: slice::top_speed(&plane, radius),
+            vorticity: slice::top_vorticity(&plane),
+            plane,
         }
     }
 }
@@ -131,13 +133,7 @@ impl Play {
         self.shots.iter().rposition(|s| s.time <= now).unwrap_or(0)
     }
 
-    fn draw(
-        &self,
-        canvas: &mut Canvas,
-        frame: usize,
-        time: Option<f64>,
-        last: f64,
-    ) -> Result<(), ViewError> {
+    fn draw(&self, canvas: &mut Canvas, time: Option<f64>, last: f64) -> Result<(), ViewError> {
         let now = self.at(time);
         let shot = &self.shots[now];
         let label = time.map_or("charged".to_owned(), |t| {
@@ -149,83 +145,99 @@ impl Play {
         canvas.text(20.0, 34.0, &label, bold.size(18.0));
 
         let lines: Vec<&DefectLine> = shot.ring.iter().collect();
-        // half a turn of the eye while it plays
-        let azimuth = -90.0 + 40.0 * (frame as f64 / (N_FRAMES - 1) as f64 - 0.5);
-        let q = time.is_none().then_some(Q);
-        let [half_x, half_z] = shot.plane.half_size();
-        let solids = colloid_at(self.radius, q, &lines, Some(&shot.plane), [azimuth, 20.0]);
-        let unit = (470.0 / (2.0 * half_x)).min(440.0 / (2.0 * half_z));
-        canvas.solids([0.0, 60.0], [480.0, 470.0], [0.0, 0.0], unit, &solids)?;
-        profile_bar(canvas, [150.0, 540.0], [180.0, 9.0], 13.0);
+        self.draw_space(canvas, shot, &lines)?;
+        self.draw_plane(canvas, shot, &lines)?;
+        self.draw_energy(canvas, now, time, last);
+        Ok(())
+    }
 
-        let scale = Scale::diverging((0.7 * shot.vorticity).max(1e-30));
+    /// Particle, ring and director in three dimensions, with the colours of both.
+    fn draw_space(
+        &self,
+        canvas: &mut Canvas,
+        shot: &Shot,
+        lines: &[&DefectLine],
+    ) -> Result<(), ViewError> {
+        let q = shot.time.is_none().then_some(Q);
+        let solids = colloid_at(self.radius, q, lines, Some(&shot.plane), EYE);
+        let unit = self.unit_of(&shot.plane);
+        canvas.solids([0.0, 50.0], [470.0, 450.0], [0.0, 0.0], unit, &solids)?;
+        let style = Style::default().middle().size(13.0);
+        profile_bar(canvas, [40.0, 524.0], [170.0, 9.0], 12.0);
+        canvas.text(125.0, 517.0, "Ring: cross-section", style);
+        particle_bar(canvas, [270.0, 524.0], [170.0, 9.0], 12.0);
+        canvas.text(355.0, 517.0, "Particle: surface director, *x*", style);
+        Ok(())
+    }
+
+    /// Units of the canvas per unit of length.
+    fn unit_of(&self, plane: &Slice) -> f64 {
+        let [half_x, half_z] = plane.half_size();
+        (420.0 / (2.0 * half_x)).min(420.0 / (2.0 * half_z))
+    }
+
+    /// The plane through the centre, with its scales.
+    fn draw_plane(
+        &self,
+        canvas: &mut Canvas,
+        shot: &Shot,
+        lines: &[&DefectLine],
+    ) -> Result<(), ViewError> {
+        let scale = Scale::diverging((slice::SATURATED * shot.vorticity).max(1e-30));
+        let [half_x, half_z] = shot.plane.half_size();
+        let unit = self.unit_of(&shot.plane);
+        let center = [730.0, 66.0 + half_z * unit];
         let look = Look {
             vorticity: &scale,
             speed: (0.6 * shot.speed).max(1e-30),
             radius: self.radius,
-            unit: unit * 0.98,
-            center: [720.0, 295.0],
+            unit,
+            center,
         };
-        slice::draw(canvas, &shot.plane, &lines, &look)?;
-        let label = if shot.speed > 0.0 {
-            format!(
-                "largest |*u*| {} ξ_{{N}}/τ_{{N}}, |ω| {} /τ_{{N}}",
-                text::significant(shot.speed, 2),
-                text::significant(shot.vorticity, 2)
-            )
+        slice::draw(canvas, &shot.plane, lines, &look)?;
+        look.ticks(canvas, [half_x, half_z], 12.0);
+        let (left, foot) = (center[0] - half_x * unit, center[1] + half_z * unit);
+        let style = Style::default().size(13.0);
+        if shot.vorticity > 0.0 {
+            let most = text::significant(slice::SATURATED * shot.vorticity, 2);
+            let label = format!("ω_{{0}} = {most} /τ_{{N}}");
+            canvas.text(left, foot + 42.0, &label, style);
+            slice::vorticity_bar(canvas, [center[0], foot + 31.0], 130.0, 12.0);
+            look.arrow_key(canvas, &shot.plane, [center[0] + 92.0, foot + 42.0], 13.0);
         } else {
-            "at rest".to_owned()
-        };
-        let style = Style::default().middle().size(14.0).color(INK);
-        canvas.text(720.0, 548.0, &label, style);
-        self.energy(canvas, now, time, last);
+            canvas.text(center[0], foot + 42.0, "at rest", style.middle());
+        }
         Ok(())
     }
 
     /// Logarithm of the energy against that of time, with a dot for now.
-    fn energy(&self, canvas: &mut Canvas, now: usize, time: Option<f64>, last: f64) {
-        let (at, size) = ([70.0, 582.0], [860.0, 90.0]);
-        let energy = |s: &Shot| s.energy.max(1e-9).ln();
-        let top = self.shots.iter().map(energy).fold(f64::MIN, f64::max);
-        let bottom = self.shots.iter().map(energy).fold(f64::MAX, f64::min);
-        let across = |t: f64| at[0] + size[0] * (t.max(FIRST) / FIRST).ln() / (last / FIRST).ln();
-        let place = |s: &Shot| {
-            let t = s.time.map_or(FIRST, |t| t / self.unit);
-            [
-                across(t),
-                at[1] + size[1] * (top - energy(s)) / (top - bottom).max(1e-9),
-            ]
+    fn draw_energy(&self, canvas: &mut Canvas, now: usize, time: Option<f64>, last: f64) {
+        let (at, size) = ([92.0, 596.0], [840.0, 84.0]);
+        let curve: Vec<(f64, f64)> = self
+            .shots
+            .iter()
+            .map(|s| (s.time.map_or(FIRST, |t| t / self.unit), s.energy.max(1e-9)))
+            .collect();
+        let (low, high) = log_bounds(curve.iter().map(|p| p.1), 1.0);
+        // five decades are seen; a released state has none of its energy left
+        let low = low.max(1e-5 * high);
+        let ticks: Vec<(f64, String)> = (low.log10().ceil() as i32..=high.log10().floor() as i32)
+            .map(|k| 10.0_f64.powi(k))
+            .map(|v| (v, text::log_tick(v)))
+            .collect();
+        let axes = Axes {
+            at,
+            size,
+            time: Axis::log("*t* Γ*L*/*R*^{2}", (FIRST, last)),
+            value: Axis::log("*F* / *L*ξ_{N}", (low, high)),
+            ticks: &ticks,
+            type_size: 13.0,
         };
-        let foot = at[1] + size[1] + 4.0;
-        canvas.line([at[0], foot], [at[0] + size[0], foot], QUIET, 1.0);
-        let mut decade = FIRST;
-        while decade <= last * 1.001 {
-            let x = across(decade);
-            canvas.line([x, foot], [x, foot + 5.0], QUIET, 1.0);
-            let style = Style::default().middle().size(13.0);
-            canvas.text(x, foot + 19.0, &text::log_tick(decade), style);
-            decade *= 10.0;
-        }
-        let style = Style::default().middle().size(13.0);
-        let middle = at[0] + 0.5 * size[0];
-        canvas.text(middle, foot + 33.0, "*t* Γ*L*/*R*^{2}", style);
-        let style = Style {
-            upward: true,
-            ..Style::default().middle().size(13.0)
-        };
-        canvas.text(at[0] - 14.0, at[1] + 0.5 * size[1], "log *F*", style);
-        let path: Vec<[f64; 2]> = self.shots.iter().map(place).collect();
-        line_path(canvas, &path, QUIET, 1.2);
-        line_path(canvas, &path[..=now], INK, 2.4);
-        let x = time.map_or(at[0], across);
-        let y = path[now][1];
-        canvas.raw(&format!(
-            r#"<circle cx="{x:.2}" cy="{y:.2}" r="5" fill="{VERMILION}"/>"#
-        ));
-        let shot = &self.shots[now];
-        let label = format!("*F* = {} *L*ξ_{{N}}", text::significant(shot.energy, 3));
+        axes.draw(canvas, &curve, now, time.unwrap_or(FIRST));
+        let energy = text::significant(self.shots[now].energy, 3);
+        let label = format!("*F* = {energy} *L*ξ_{{N}}");
         let style = Style::default().end().bold().size(16.0).halo();
-        canvas.text(at[0] + size[0], at[1] + 12.0, &label, style);
+        canvas.text(at[0] + size[0], at[1] + 14.0, &label, style);
     }
 
     fn finding(&self) -> String {

@@ -51,22 +51,21 @@ impl Canvas {
         } else {
             ""
         };
-        let rim = if style.halo {
-            r##" stroke="#ffffff" stroke-width="3" stroke-linejoin="round" paint-order="stroke""##
-        } else {
-            ""
-        };
         let turn = if style.upward {
             format!(r#" transform="rotate(-90 {x:.2} {y:.2})""#)
         } else {
             String::new()
         };
-        self.raw(&format!(
-            r#"<text x="{x:.2}" y="{y:.2}" font-size="{:.2}" fill="{}" text-anchor="{anchor}"{weight}{rim}{turn}>{}</text>"#,
-            style.size,
-            style.color,
-            text::spans(label, style.size)
-        ));
+        let spans = text::spans(label, style.size);
+        let place = format!(r#"x="{x:.2}" y="{y:.2}" font-size="{:.2}""#, style.size);
+        let looks = format!(r#"text-anchor="{anchor}"{weight}{turn}>{spans}</text>"#);
+        if style.halo {
+            // below all of the label: the rim of a subscript would cover what it belongs to
+            let rim =
+                r##"fill="#ffffff" stroke="#ffffff" stroke-width="3" stroke-linejoin="round""##;
+            self.raw(&format!("<text {place} {rim} {looks}"));
+        }
+        self.raw(&format!(r#"<text {place} fill="{}" {looks}"#, style.color));
     }
 
     /// Letter of a panel, bold, at its top left.
@@ -199,6 +198,33 @@ impl Canvas {
         self.text(at[0] + size[0] + 31.0, at[1] + size[1] / 2.0, label, style);
     }
 
+    /// Flat colour bar with ticks, values and their labels, below in type of a size.
+    pub fn flat_bar(
+        &mut self,
+        at: [f64; 2],
+        size: [f64; 2],
+        scale: &Scale,
+        ticks: &[(f64, &str)],
+        type_size: f64,
+    ) {
+        const N: usize = 64;
+        let dx = size[0] / N as f64;
+        for k in 0..N {
+            let v = scale.value((k as f64 + 0.5) / N as f64);
+            let x = at[0] + dx * k as f64;
+            // An overlap of a pixel hides the seams between the steps.
+            let width = (dx + 1.0).min(at[0] + size[0] - x);
+            self.rect([x, at[1]], [width, size[1]], &scale.css(v));
+        }
+        let foot = at[1] + size[1];
+        for (value, label) in ticks {
+            let x = at[0] + size[0] * scale.fraction(*value);
+            self.line([x, foot], [x, foot + 0.25 * type_size], INK, 0.7);
+            let style = Style::default().middle().size(type_size);
+            self.text(x, foot + 1.15 * type_size, label, style);
+        }
+    }
+
     /// The note at the foot: quality and where the run departs from the published one.
     pub fn footnote(&mut self, lines: &[String]) {
         let mut y = self.height - 5.0 - 10.5 * (lines.len().saturating_sub(1)) as f64;
@@ -224,9 +250,9 @@ impl Canvas {
         } = self;
         format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
-             viewBox=\"0 0 {width} {height}\" font-family=\"{}, Arial, sans-serif\">\n\
+             viewBox=\"0 0 {width} {height}\" font-family=\"{}\">\n\
              {before}<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n{body}</svg>\n",
-            font::FAMILY
+            font::list()
         )
     }
 

@@ -9,6 +9,11 @@ use std::sync::{Arc, LazyLock};
 /// Family name, first in every font list.
 pub const FAMILY: &str = "Source Sans 3";
 
+/// Value of `font-family`: a name that ends in a number is no identifier, so that browsers drop a list where it stands unquoted.
+pub fn list() -> String {
+    format!("'{FAMILY}', Arial, sans-serif")
+}
+
 const FACES: [&[u8]; 3] = [
     include_bytes!("../../assets/source-sans-3/SourceSans3-Regular.ttf"),
     include_bytes!("../../assets/source-sans-3/SourceSans3-It.ttf"),

@@ -67,6 +67,22 @@ impl Axis {
             (value - a) / (b - a)
         }
     }
+
+    /// Value at a fraction of the axis.
+    pub fn value(&self, fraction: f64) -> f64 {
+        let (a, b) = self.range;
+        if self.log {
+            a * (b / a).powf(fraction)
+        } else {
+            a + (b - a) * fraction
+        }
+    }
+
+    /// The same with room for `height` of a panel `of` high above the data.
+    pub fn with_room(self, height: f64, of: f64) -> Self {
+        let range = (self.range.0, self.value(of / (of - height)));
+        Self { range, ..self }
+    }
 }
 
 /// A box of axes at a place of the canvas.
@@ -204,6 +220,10 @@ mod tests {
             y: Axis::log("*y*", (0.1, 10.0)),
         };
         assert_eq!(panel.place(1.0, 1.0), [100.0, 50.0]);
+        assert_eq!((panel.x.value(0.5), panel.y.value(0.5)), (1.0, 1.0));
+        // a tenth of the height is free above what was the top
+        let roomy = panel.y.clone().with_room(6.0, 60.0);
+        assert!((roomy.fraction(10.0) - 0.9).abs() < 1e-12);
         let line = LinePlot::new()
             .with_data(vec![(0.0, 1.0), (2.0, 1.0)])
             .with_color("#ff0000")

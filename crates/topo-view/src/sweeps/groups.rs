@@ -2,14 +2,12 @@
 
 use super::cases::{Cases, Row, Swept};
 use crate::figures::series::{bounds, step, ticks};
-use crate::plot::color::{BLUE, GREEN, INK, ORANGE, PURPLE, SKY, Scale, VERMILION};
+use crate::plot::color::{LINES, Scale};
 
-/// Colours of lines that a legend names.
-pub const PALETTE: [&str; 7] = [BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, INK];
 /// Dashes by which lines of one colour differ.
 const DASHES: [&str; 3] = ["", "5 2.5", "1.5 2"];
 /// Most lines that a legend names.
-pub const MOST_NAMED: usize = PALETTE.len() * DASHES.len();
+pub const MOST_NAMED: usize = LINES.len() * DASHES.len();
 /// Most lines that differ in numbers and are named all the same.
 const MOST_NUMBERED: usize = 12;
 
@@ -26,8 +24,8 @@ impl Look {
     /// The looks of the k-th line of a legend.
     pub fn named(k: usize) -> Self {
         Self {
-            color: PALETTE[k % PALETTE.len()].to_owned(),
-            dash: DASHES[k / PALETTE.len() % DASHES.len()],
+            color: LINES[k % LINES.len()].to_owned(),
+            dash: DASHES[k / LINES.len() % DASHES.len()],
         }
     }
 }

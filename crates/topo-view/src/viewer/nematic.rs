@@ -1,8 +1,10 @@
 //! Colloids by topological charge, with director and defect lines during the discharge.
 
+use super::Data;
 use super::bytes::{coordinates, reach, shades, shorts};
 use crate::data::{NematicSweep, Slice};
 use crate::error::ViewError;
+use crate::figures::nematic::ring;
 use crate::figures::profile_scale;
 use crate::plot::text;
 use serde_json::{Value, json};
@@ -12,20 +14,34 @@ use topo_analysis::NematicRow;
 /// Rods along the wider side of a slice.
 const N_RODS: f64 = 30.0;
 
-/// What the viewer needs, if there is a nematic sweep.
-pub fn data(results: &Path) -> Result<Option<Value>, ViewError> {
+/// What the viewer needs, a file a colloid, if there is a nematic sweep.
+pub fn data(results: &Path) -> Result<Option<Data>, ViewError> {
     let sweep = match NematicSweep::read(results) {
         Err(ViewError::Missing { .. }) => return Ok(None),
         other => other?,
     };
-    let mut cases = Vec::new();
+    let (mut cases, mut files) = (Vec::new(), Vec::new());
     for row in &sweep.rows {
-        cases.push(colloid(&sweep, row)?);
+        let flow = if row.flow.is_on() { "-flow" } else { "" };
+        let file = format!("q{:02}{flow}", row.q);
+        cases.push(json!({
+            "q": row.q,
+            "flow": row.flow.is_on(),
+            "file": file,
+            "energy": text::significant(row.f_charged, 4),
+            "buckled": row.is_buckled(),
+        }));
+        files.push((format!("nematic/{file}"), colloid(&sweep, row)?));
     }
     let first = sweep.rows.iter().position(|r| r.q == 2).unwrap_or(0);
-    Ok(Some(json!({ "cases": cases, "first": first })))
+    let index = json!({ "cases": cases, "first": first });
+    Ok(Some(Data { index, files }))
 }
 
+/// Distance of the points of a ring, as a share of the particle's radius.
+const RING_STEP: f64 = 0.05;
+
+/// Shapes of a colloid over its discharge.
 fn colloid(sweep: &NematicSweep, row: &NematicRow) -> Result<Value, ViewError> {
     let (slices, lines) = (sweep.slices(row)?, sweep.rings(row)?);
     let scale = slices
@@ -40,6 +56,7 @@ fn colloid(sweep: &NematicSweep, row: &NematicRow) -> Result<Value, ViewError> {
             let here: Vec<Value> = lines
                 .iter()
                 .filter(|l| l.time == slice.time && l.points.len() > 2)
+                .map(|l| ring::smooth(l, RING_STEP * row.radius))
                 .map(|l| {
                     let angles = l.angles.iter();
                     json!({
@@ -57,13 +74,10 @@ fn colloid(sweep: &NematicSweep, row: &NematicRow) -> Result<Value, ViewError> {
         .collect();
     Ok(json!({
         "q": row.q,
-        "flow": row.flow.is_on(),
         "radius": row.radius,
-        "energy": text::significant(row.f_charged, 4),
-        "buckled": row.is_buckled(),
         "scale": scale,
         "rod": rod,
-        "extent": slices.first().map_or(row.radius, |s| s.half_size()[0]),
+        "half": slices.first().map_or([row.radius; 2], |s| s.half_size()),
         "frames": frames,
     }))
 }

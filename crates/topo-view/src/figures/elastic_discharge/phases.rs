@@ -1,7 +1,7 @@
 //! Panel (c): energy against time, with the knot types passed on the way.
 
 use super::super::figure::Context;
-use super::super::series::{Table, bounds, line};
+use super::super::series::{Table, bounds};
 use crate::data::{self, Case, Moment, Sweep};
 use crate::error::ViewError;
 use crate::plot::canvas::Canvas;
@@ -9,21 +9,20 @@ use crate::plot::color::{INK, QUIET};
 use crate::plot::panel::{Axis, Panel};
 use crate::plot::style::Style;
 use crate::plot::text;
-use kuva::prelude::Plot;
+use kuva::prelude::{BandPlot, LinePlot, LineStyle, Plot};
 
-/// Shades of the knot-type bands, by crossing number: the unknot is left white.
-fn band_color(knot: &str) -> Option<(String, f64)> {
+/// Shades below the curve, by crossing number of the knot type: the unknot is left white.
+fn shade(knot: &str) -> Option<&'static str> {
     let crossings = knot.trim_start_matches('m').split('_').next()?;
     let crossings: u32 = crossings.parse().ok()?;
-    let shade = match crossings {
-        0 => return None,
-        3 => "#d7e3f4",
-        4 => "#dcecdc",
-        5 => "#f6e7cb",
-        6 => "#efdcea",
-        _ => "#d9dce0",
-    };
-    Some((shade.to_owned(), 1.0))
+    match crossings {
+        0 => None,
+        3 => Some("#c6daf0"),
+        4 => Some("#cfe6cf"),
+        5 => Some("#f6dfb4"),
+        6 => Some("#ead0e4"),
+        _ => Some("#d0d4d9"),
+    }
 }
 
 /// A discharge in the panel.
@@ -46,9 +45,41 @@ impl<'a> Shown<'a> {
     }
 
     /// Its line from the left edge of the panel on.
-    fn line(&self, first: f64, width: f64) -> Plot {
+    fn line(&self, first: f64, style: LineStyle) -> Plot {
         let seen = self.curve.iter().copied().filter(|p| p.0 >= first);
-        line(seen.collect(), self.ink, width)
+        let line = LinePlot::new().with_data(seen.collect::<Vec<_>>());
+        let line = line.with_color(self.ink).with_stroke_width(1.8);
+        Plot::Line(line.with_line_style(style))
+    }
+
+    /// Energy at a time, between the points of the curve.
+    fn energy(&self, time: f64) -> f64 {
+        let after = self.curve.iter().position(|p| p.0 >= time);
+        match after {
+            Some(0) => self.curve[0].1,
+            Some(k) => {
+                let ((t0, e0), (t1, e1)) = (self.curve[k - 1], self.curve[k]);
+                e0 + (e1 - e0) * (time / t0).ln() / (t1 / t0).ln()
+            }
+            None => self.curve.last().map_or(0.0, |p| p.1),
+        }
+    }
+
+    /// The area below the curve from one time to another.
+    fn below(&self, from: f64, to: f64, color: &str) -> Plot {
+        let inside = self
+            .curve
+            .iter()
+            .map(|p| p.0)
+            .filter(|t| from < *t && *t < to);
+        let times: Vec<f64> = [from].into_iter().chain(inside).chain([to]).collect();
+        let energies: Vec<f64> = times.iter().map(|t| self.energy(*t)).collect();
+        let floor = vec![0.0; times.len()];
+        Plot::Band(
+            BandPlot::new(times, floor, energies)
+                .with_color(color)
+                .with_opacity(1.0),
+        )
     }
 }
 
@@ -89,14 +120,10 @@ pub fn draw(
         at,
         size: [282.0, 178.0],
         x: Axis::log("Time *t* / *T*_{0}", (first, last * 1.02)),
-        y: Axis::linear("Energy *E*(*t*) / *E*(0)", (0.0, 1.18), 0.2),
+        y: Axis::linear("Energy *E*(*t*) / *E*(0)", (0.0, 1.24), 0.2),
     };
-    let mut plots = vec![plain.line(first, 2.0)];
-    if !dashed.curve.is_empty() {
-        plots.push(dashed.line(first, 1.4));
-    }
     let bands = stretches(&moments);
-    draw_bands(canvas, &panel, plots, &bands, first);
+    draw_bands(canvas, &panel, (&plain, &dashed), &bands, first);
     for shown in [&plain, &dashed] {
         for (x, y) in &shown.curve {
             let twist = shown.case.map_or(f64::NAN, |c| c.first().twist);
@@ -128,31 +155,38 @@ fn most_types<'a>(
     Ok(best.map(|(_, case, moments)| (case, moments)))
 }
 
-/// The curves over shaded and named stretches of one knot type.
+/// The curves, the area below the plain one shaded and named by the knot type that it passes.
 fn draw_bands(
     canvas: &mut Canvas,
     panel: &Panel,
-    plots: Vec<Plot>,
+    (plain, dashed): (&Shown<'_>, &Shown<'_>),
     bands: &[(String, f64, f64)],
     first: f64,
 ) {
-    let shaded: Vec<(f64, f64, String, f64)> = bands
-        .iter()
-        .filter_map(|(knot, from, to)| {
-            let (shade, opacity) = band_color(knot)?;
-            Some((from.max(first), to.max(first * 1.0001), shade, opacity))
-        })
-        .collect();
-    panel.draw(canvas, plots, &shaded);
+    let until = plain.curve.last().map_or(first, |p| p.0);
+    let mut plots = Vec::new();
     for (knot, from, to) in bands {
-        let [x0, x1] = [from.max(first), *to].map(|t| panel.place(t, 0.0)[0]);
+        let (from, to) = (from.max(first), to.min(until));
+        if let Some(color) = shade(knot).filter(|_| to > from) {
+            plots.push(plain.below(from, to, color));
+        }
+    }
+    plots.push(plain.line(first, LineStyle::Solid));
+    if !dashed.curve.is_empty() {
+        plots.push(dashed.line(first, LineStyle::Dashed));
+    }
+    panel.draw(canvas, plots, &[]);
+    for (k, (knot, from, to)) in bands.iter().enumerate() {
+        let [x0, x1] = [from.max(first), to.min(until)].map(|t| panel.place(t, 0.0)[0]);
+        let [top, foot] = [1.22, 0.0].map(|e| panel.place(first, e)[1]);
+        if k > 0 && x0 > panel.at[0] {
+            let reach = panel.place(first, plain.energy(*from))[1];
+            canvas.line([x0, top], [x0, reach.min(foot)], QUIET, 0.6);
+        }
         if x1 - x0 > 13.0 {
-            canvas.text(
-                (x0 + x1) / 2.0,
-                panel.at[1] + 13.0,
-                &text::knot_name(knot),
-                Style::default().middle().bold().size(10.0),
-            );
+            let style = Style::default().middle().bold().size(10.0);
+            let middle = (x0 + x1) / 2.0;
+            canvas.text(middle, panel.at[1] + 13.0, &text::knot_name(knot), style);
         }
     }
 }

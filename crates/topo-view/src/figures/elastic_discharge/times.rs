@@ -1,69 +1,26 @@
-//! Panels (d) and (e): the time to release 99 %, against twist and for all states.
+//! Panel (e): the time to release 99 % of all states.
 
-use super::super::series::{OTHERS, Table, color, labels, line, log_bounds};
-use super::{drawing_order, others_note, twist_axis};
+use super::super::series::{Table, line, log_bounds};
+use super::SIZE;
 use crate::data::{Case, Sweep};
 use crate::plot::canvas::Canvas;
 use crate::plot::color::Scale;
 use crate::plot::panel::{Axis, Panel};
 use crate::plot::style::Style;
 use crate::plot::text;
-use kuva::prelude::{LinePlot, Plot, ScatterPlot};
+use kuva::prelude::{Plot, ScatterPlot};
 use std::path::Path;
 use topo_analysis::{SweepRow, read_table, resonances};
 
-const SIZE: [f64; 2] = [266.0, 178.0];
-
-fn t99(case: &Case) -> Option<[f64; 3]> {
+/// The time to release 99 %.
+pub fn t99(case: &Case) -> Option<[f64; 3]> {
     case.spread(|c| c.t99)
 }
 
-fn time_axis(sweep: &Sweep) -> Axis {
+/// Its axis.
+pub fn time_axis(sweep: &Sweep) -> Axis {
     let all = sweep.cases.iter().filter_map(t99).flatten();
     Axis::log("Discharge time *t*_{99} / *T*_{0}", log_bounds(all, 1.25))
-}
-
-/// Time against twist by knot.
-pub fn against_twist(sweep: &Sweep, canvas: &mut Canvas, at: [f64; 2], table: &mut Table) {
-    let panel = Panel {
-        at,
-        size: SIZE,
-        x: twist_axis(sweep),
-        y: time_axis(sweep),
-    };
-    let mut plots = Vec::new();
-    let mut names = Vec::new();
-    for knot in drawing_order(sweep) {
-        let ink = color(knot).unwrap_or(OTHERS);
-        let mut points = Vec::new();
-        for case in sweep.of(knot) {
-            let Some([mean, low, high]) = t99(case) else {
-                continue;
-            };
-            let x = case.first().twist;
-            points.push((x, mean));
-            table.row(&["d", knot], &[x, x, mean, low, high]);
-            if color(knot).is_some() && high > low * 1.005 {
-                plots.push(bar(x, low, high, ink, 1.0));
-            }
-        }
-        let peak = points.iter().min_by(|a, b| a.0.abs().total_cmp(&b.0.abs()));
-        if let (Some(ink), Some((x, y))) = (color(knot), peak) {
-            names.push((panel.place(*x, *y)[1], text::knot_name(knot), ink));
-        }
-        plots.push(line(
-            points,
-            ink,
-            if color(knot).is_some() { 1.8 } else { 1.0 },
-        ));
-    }
-    panel.draw(canvas, plots, &[]);
-    let x = panel.place(0.0, 1.0)[0] + 42.0;
-    for (y, _, ink) in &names {
-        canvas.line([x - 40.0, *y], [x - 16.0, *y], ink, 0.6);
-    }
-    labels(canvas, x - 12.0, names);
-    others_note(canvas, &panel, sweep);
 }
 
 /// All states: knots side by side, in each from the most negative to the most positive twist.
@@ -91,7 +48,7 @@ pub fn all(sweep: &Sweep, canvas: &mut Canvas, at: [f64; 2], table: &mut Table) 
             table.row(&["e", knot], &[twist, x, mean, low, high]);
             let ink = scale.css(twist);
             if high > low * 1.005 {
-                plots.push(bar(x, low, high, &ink, 0.9));
+                plots.push(line(vec![(x, low), (x, high)], &ink, 0.9));
             }
             let dot = ScatterPlot::new()
                 .with_data(vec![(x, mean)])
@@ -122,11 +79,6 @@ pub fn all(sweep: &Sweep, canvas: &mut Canvas, at: [f64; 2], table: &mut Table) 
     let ticks = [low_twist, (low_twist + high_twist) / 2.0, high_twist];
     let bar_at = [at[0] + size[0] + 12.0, at[1] + 20.0];
     canvas.color_bar(bar_at, [8.0, size[1] - 40.0], &scale, &ticks, "Twist θ′*h*");
-}
-
-fn bar(x: f64, low: f64, high: f64, ink: &str, width: f64) -> Plot {
-    let line = LinePlot::new().with_data(vec![(x, low), (x, high)]);
-    Plot::Line(line.with_color(ink).with_stroke_width(width))
 }
 
 /// A knot whose time exceeds the median of all by this factor is called slow.

@@ -1,12 +1,13 @@
 //! Charging the colloid: the ring and its profiles, its buckling, the order parameter and the free energy.
 
-use super::{colloid, face, mark_onset, onset, profile_bar, winding_axis};
+use super::{UNKNOWN, colloid, face, mark_onset, onset, particle_bar, profile_bar, winding_axis};
 use crate::data::NematicSweep;
 use crate::error::ViewError;
+use crate::figures::beside::{self, Named};
 use crate::figures::figure::{Context, Drawn, Figure};
 use crate::figures::series::{Table, bounds, line, step};
 use crate::plot::canvas::Canvas;
-use crate::plot::color::{BLUE, INK, Scale, VERMILION};
+use crate::plot::color::{BLUE, INK, Scale, VERMILION, css};
 use crate::plot::panel::{Axis, Panel};
 use crate::plot::style::Style;
 use crate::plot::text;
@@ -16,11 +17,16 @@ use topo_analysis::{NematicRow, nematic_resonance};
 pub const FIGURE: Figure = Figure {
     name: "nematic-charging",
     title: "Charging a nematic colloid",
-    caption: "(a) The particle, coloured by the x component of its anchoring, the director in the \
-              plane through its centre, and the defect ring coloured by its local cross-section. \
-              (b) Rings of several charges. (c) Horizontal order parameter of every charge as a \
-              vector. (d) Its size against q. (e) Free energy against q. The dashed line marks \
-              the buckling.",
+    caption: "(a) The particle, coloured by the x component of the director that its surface is given \
+              (blue −1, yellow 1), the director in the plane through its centre, and the defect ring, \
+              a spline through the points where the order is lowest, coloured by its local \
+              cross-section: +½ (dark), twisted, −½ (bright), grey where it is not determined. \
+              (b) Rings of several charges q, the turns of the surface director around the \
+              equator. (c) Horizontal order parameter of every charge as a vector: the mean of \
+              (Q_xz, Q_yz) over the nematic times 2/(3 S_eq), the mean tilt in radians where it is \
+              small; Q: order tensor, S_eq: its order in equilibrium. (d) Its size against q. \
+              (e) Free energy F of the charged state against q in L ξ_N, with the elastic constant \
+              L and the nematic correlation length ξ_N. The dashed line at q_c marks the buckling.",
     claim: "The defect ring buckles for q ≥ q_c (published: 7) into a loop with q maxima; a \
             horizontal mean director appears there, while the free energy grows with q all the way.",
     table: "nematic/sweep.csv",
@@ -30,16 +36,17 @@ pub const FIGURE: Figure = Figure {
 fn draw(context: &Context) -> Result<Drawn, ViewError> {
     let sweep = NematicSweep::read(context.results)?;
     let mut table = Table::new("panel,q,x,y");
-    let mut canvas = Canvas::new(720.0, 560.0, 4.0 * context.detail);
+    let mut canvas = Canvas::new(720.0, 582.0, 4.0 * context.detail);
     canvas.letter(8.0, 18.0, "a");
     overview(&sweep, &mut canvas)?;
     canvas.letter(372.0, 18.0, "b");
     rings(&sweep, &mut canvas)?;
-    canvas.letter(8.0, 322.0, "c");
+    color_key(&mut canvas);
+    canvas.letter(8.0, 344.0, "c");
     vectors(&sweep, &mut canvas, &mut table);
-    canvas.letter(250.0, 322.0, "d");
+    canvas.letter(250.0, 344.0, "d");
     order(&sweep, &mut canvas, &mut table);
-    canvas.letter(486.0, 322.0, "e");
+    canvas.letter(486.0, 344.0, "e");
     energy(&sweep, &mut canvas, &mut table);
     canvas.footnote(&face(&sweep, context.quality));
     Ok(Drawn {
@@ -79,14 +86,20 @@ fn overview(sweep: &NematicSweep, canvas: &mut Canvas) -> Result<(), ViewError> 
         &label,
         Style::default().bold().size(11.0),
     );
-    profile_bar(canvas, [30.0, 292.0], [150.0, 7.0], 8.5);
-    canvas.text(
-        198.0,
-        299.0,
-        "Cross-section of the ring",
-        Style::default().size(9.0),
-    );
     Ok(())
+}
+
+/// What the colours of rings and particles mean.
+fn color_key(canvas: &mut Canvas) {
+    const TOP: f64 = 308.0;
+    let small = Style::default().size(9.0);
+    profile_bar(canvas, [30.0, TOP], [120.0, 7.0], 8.5);
+    canvas.text(162.0, TOP + 7.0, "Ring: local cross-section", small);
+    canvas.rect([280.0, TOP], [16.0, 7.0], &css(UNKNOWN));
+    canvas.text(301.0, TOP + 7.0, "not determined", small);
+    particle_bar(canvas, [414.0, TOP], [120.0, 7.0], 8.5);
+    let label = "Particle: *x* component of the surface director";
+    canvas.text(546.0, TOP + 7.0, label, small);
 }
 
 fn rings(sweep: &NematicSweep, canvas: &mut Canvas) -> Result<(), ViewError> {
@@ -120,9 +133,6 @@ fn rings(sweep: &NematicSweep, canvas: &mut Canvas) -> Result<(), ViewError> {
     Ok(())
 }
 
-/// Distance that the numbers at the vectors keep.
-const ROOM: f64 = 12.0;
-
 fn vectors(sweep: &NematicSweep, canvas: &mut Canvas, table: &mut Table) {
     let ends: Vec<(u32, f64, f64)> = sweep
         .rows
@@ -138,10 +148,18 @@ fn vectors(sweep: &NematicSweep, canvas: &mut Canvas, table: &mut Table) {
         .fold(0.02, f64::max);
     let half = 1.25 * most;
     let panel = Panel {
-        at: [52.0, 330.0],
+        at: [52.0, 352.0],
         size: [166.0, 166.0],
-        x: Axis::linear("⟨*Q*_{xz}⟩ (scaled)", (-half, half), step(2.0 * half, 5.0)),
-        y: Axis::linear("⟨*Q*_{yz}⟩ (scaled)", (-half, half), step(2.0 * half, 5.0)),
+        x: Axis::linear(
+            "2⟨*Q*_{xz}⟩ / 3*S*_{eq}",
+            (-half, half),
+            step(2.0 * half, 5.0),
+        ),
+        y: Axis::linear(
+            "2⟨*Q*_{yz}⟩ / 3*S*_{eq}",
+            (-half, half),
+            step(2.0 * half, 5.0),
+        ),
     };
     let scale = Scale::viridis(
         f64::from(sweep.rows[0].q),
@@ -159,22 +177,25 @@ fn vectors(sweep: &NematicSweep, canvas: &mut Canvas, table: &mut Table) {
         plots.push(Plot::Scatter(dot));
     }
     panel.draw(canvas, plots, &[]);
-    // from the outside in; a number that another one leaves no room for is left out
-    let mut far: Vec<&(u32, f64, f64)> = ends
+    let far: Vec<&(u32, f64, f64)> = ends
         .iter()
-        .filter(|(_, x, y)| x.hypot(*y) > 0.25 * most)
+        .filter(|(_, x, y)| x.hypot(*y) > 0.1 * most)
         .collect();
-    far.sort_by(|a, b| b.1.hypot(b.2).total_cmp(&a.1.hypot(a.2)));
-    let mut taken: Vec<[f64; 2]> = Vec::new();
-    for (q, x, y) in far {
-        let [px, py] = panel.place(x * 1.13, y * 1.13);
-        if taken.iter().any(|t| (t[0] - px).hypot(t[1] - py) < ROOM) {
-            continue;
-        }
-        taken.push([px, py]);
-        let style = Style::default().middle().halo().size(8.0);
-        canvas.text(px, py + 3.0, &q.to_string(), style);
-    }
+    let origin = panel.place(0.0, 0.0);
+    let lines: Vec<[[f64; 2]; 2]> = far
+        .iter()
+        .map(|(_, x, y)| [origin, panel.place(*x, *y)])
+        .collect();
+    let named: Vec<Named> = far
+        .iter()
+        .map(|(q, x, y)| Named {
+            at: panel.place(*x, *y),
+            name: q.to_string(),
+        })
+        .collect();
+    let [left, top] = panel.at;
+    let inside = [left, top, left + panel.size[0], top + panel.size[1]];
+    beside::draw(canvas, &named, &lines, inside);
 }
 
 fn order(sweep: &NematicSweep, canvas: &mut Canvas, table: &mut Table) {
@@ -186,10 +207,14 @@ fn order(sweep: &NematicSweep, canvas: &mut Canvas, table: &mut Table) {
     let (_, high) = bounds(sizes.iter().map(|p| p.1));
     let high = 1.12 * high.max(0.02);
     let panel = Panel {
-        at: [298.0, 330.0],
+        at: [298.0, 352.0],
         size: [158.0, 166.0],
         x: winding_axis(sweep),
-        y: Axis::linear("Order parameter", (-0.03 * high, high), step(high, 4.0)),
+        y: Axis::linear(
+            "2 |⟨(*Q*_{xz}, *Q*_{yz})⟩| / 3*S*_{eq}",
+            (-0.03 * high, high),
+            step(high, 4.0),
+        ),
     };
     for (x, y) in &sizes {
         table.row(&["d", &x.to_string()], &[*x, *y]);
@@ -214,7 +239,7 @@ fn energy(sweep: &NematicSweep, canvas: &mut Canvas, table: &mut Table) {
         .collect();
     let (_, high) = bounds(values.iter().map(|p| p.1));
     let panel = Panel {
-        at: [538.0, 330.0],
+        at: [538.0, 352.0],
         size: [166.0, 166.0],
         x: winding_axis(sweep),
         y: Axis::linear(

@@ -7,21 +7,25 @@ use crate::error::ViewError;
 use crate::figures::figure::{Context, Drawn, Figure};
 use crate::figures::series::{Table, bounds, line, log_bounds};
 use crate::plot::canvas::Canvas;
-use crate::plot::color::{BLUE, PURPLE, Scale, VERMILION};
+use crate::plot::color::{BLUE, INK, Scale, VERMILION};
 use crate::plot::panel::{Axis, Panel};
 use crate::plot::style::Style;
 use crate::plot::text;
-use kuva::prelude::{Plot, ScatterPlot};
+use kuva::prelude::{MarkerShape, Plot, ScatterPlot};
 use topo_analysis::{NematicRow, nematic_resonance};
 
 pub const FIGURE: Figure = Figure {
     name: "nematic-discharge",
     title: "Discharging a nematic colloid",
-    caption: "(a) Director (green), velocity (arrows, each panel with its own scale), vorticity \
-              (colour) and defect line (red) in the vertical plane through the particle after its \
-              anchoring is switched off. (b) Free energy against time for every charge. (c) Rate \
-              of the first half, 1/t50. (d) Rates 1/t99 and 1/t99.9; the dashed line marks the \
-              buckling.",
+    caption: "(a) Director (green), velocity (arrows), vorticity ω_y (colour; ω_0 is 70 % of its largest \
+              size) and defect line (red) in the vertical plane through the particle after its \
+              anchoring is switched off; each panel has its own scales, written below it. Times in \
+              R²/ΓL, with the radius R, the rotational mobility Γ and the elastic constant L; ξ_N: \
+              nematic correlation length, τ_N = ξ_N²/ΓL. (b) Free energy F against the time t since \
+              the switch for every charge q. (c) Rate 1/t50: t50 is the time in which half of the \
+              energy is released that F has right after the switch above its value in the final \
+              equilibrium. (d) Rates 1/t99 and 1/t99.9 for 99 % and 99.9 % of that energy; the \
+              dashed line marks the buckling.",
     claim: "The ring is drawn into the particle and drives a flow that changes direction. The 50 % \
             rate grows with q; the 99 % and 99.9 % rates peak near the buckling and fall behind it.",
     table: "nematic/sweep.csv",
@@ -31,16 +35,34 @@ pub const FIGURE: Figure = Figure {
 fn draw(context: &Context) -> Result<Drawn, ViewError> {
     let sweep = NematicSweep::read(context.results)?;
     let mut table = Table::new("panel,q,x,y");
-    let mut canvas = Canvas::new(720.0, 440.0, 4.0 * context.detail);
+    let mut canvas = Canvas::new(720.0, 476.0, 4.0 * context.detail);
     canvas.letter(8.0, 18.0, "a");
     let reversal = snapshots(&sweep, &mut canvas)?;
-    canvas.letter(8.0, 206.0, "b");
+    canvas.letter(8.0, 242.0, "b");
     curves(&sweep, &mut canvas, &mut table)?;
-    canvas.letter(262.0, 206.0, "c");
-    let half: Rates = ("50 %", VERMILION, |r| r.t50);
+    canvas.letter(262.0, 242.0, "c");
+    let half = Rate::new(
+        ["50 %", "*t*_{50}: 50 % of *F* released"],
+        INK,
+        MarkerShape::Circle,
+        |r| r.t50,
+    );
     rates(&sweep, &mut canvas, 308.0, "c", &[half], &mut table);
-    canvas.letter(496.0, 206.0, "d");
-    let late: [Rates; 2] = [("99 %", BLUE, |r| r.t99), ("99.9 %", PURPLE, |r| r.t999)];
+    canvas.letter(496.0, 242.0, "d");
+    let late = [
+        Rate::new(
+            ["99 %", "*t*_{99}: 99 % of *F* released"],
+            BLUE,
+            MarkerShape::Circle,
+            |r| r.t99,
+        ),
+        Rate::new(
+            ["99.9 %", "*t*_{99.9}: 99.9 % of *F* released"],
+            VERMILION,
+            MarkerShape::Square,
+            |r| r.t999,
+        ),
+    ];
     rates(&sweep, &mut canvas, 544.0, "d", &late, &mut table);
     canvas.footnote(&face(&sweep, context.quality));
     Ok(Drawn {
@@ -50,8 +72,33 @@ fn draw(context: &Context) -> Result<Drawn, ViewError> {
     })
 }
 
-/// A rate: its label, colour and time.
-type Rates = (&'static str, &'static str, fn(&NematicRow) -> Option<f64>);
+/// A rate with its looks.
+struct Rate {
+    /// The share of the energy, as the table has it.
+    share: &'static str,
+    label: &'static str,
+    color: &'static str,
+    marker: MarkerShape,
+    /// The time that it is one over.
+    time: fn(&NematicRow) -> Option<f64>,
+}
+
+impl Rate {
+    fn new(
+        [share, label]: [&'static str; 2],
+        color: &'static str,
+        marker: MarkerShape,
+        time: fn(&NematicRow) -> Option<f64>,
+    ) -> Self {
+        Self {
+            share,
+            label,
+            color,
+            marker,
+            time,
+        }
+    }
+}
 
 /// Four times of one run, with flow if there is one; says whether the flow reverses.
 fn snapshots(sweep: &NematicSweep, canvas: &mut Canvas) -> Result<String, ViewError> {
@@ -104,7 +151,7 @@ fn curves(sweep: &NematicSweep, canvas: &mut Canvas, table: &mut Table) -> Resul
     let (_, top) = log_bounds(series.iter().flat_map(|s| s.1.iter().map(|p| p.1)), 1.5);
     let (t0, t1) = log_bounds(series.iter().flat_map(|s| s.1.iter().map(|p| p.0)), 1.0);
     let panel = Panel {
-        at: [52.0, 214.0],
+        at: [52.0, 250.0],
         size: [162.0, 166.0],
         x: Axis::log("Time *t* Γ*L*/*R*^{2}", (t0.max(1e-4), t1.max(2e-4))),
         y: Axis::log("Free energy *F* / *L*ξ_{N}", (top * 1e-4, top)),
@@ -120,8 +167,8 @@ fn curves(sweep: &NematicSweep, canvas: &mut Canvas, table: &mut Table) -> Resul
     }
     panel.draw(canvas, plots, &[]);
     let ticks: Vec<f64> = [low, (0.5 * (low + high)).round(), high].to_vec();
-    canvas.color_bar([222.0, 232.0], [7.0, 120.0], &scale, &ticks, "");
-    canvas.text(220.0, 224.0, "*q*", Style::default().size(9.5));
+    canvas.color_bar([222.0, 268.0], [7.0, 120.0], &scale, &ticks, "");
+    canvas.text(220.0, 260.0, "*q*", Style::default().size(9.5));
     Ok(())
 }
 
@@ -130,50 +177,48 @@ fn rates(
     canvas: &mut Canvas,
     left: f64,
     letter: &str,
-    shown: &[Rates],
+    shown: &[Rate],
     table: &mut Table,
 ) {
     let area = sweep.rows[0].radius.powi(2);
     let series: Vec<Vec<(f64, f64)>> = shown
         .iter()
-        .map(|(_, _, time)| {
-            let rate = |r: &NematicRow| Some((f64::from(r.q), area / time(r)?));
+        .map(|shown| {
+            let rate = |r: &NematicRow| Some((f64::from(r.q), area / (shown.time)(r)?));
             sweep.rows.iter().filter_map(rate).collect()
         })
         .collect();
     let size = [160.0, 166.0];
     let label_at = |k: usize| 16.0 + 12.0 * k as f64;
     let range = log_bounds(series.iter().flatten().map(|p| p.1), 1.35);
-    // Room for the labels above what lies in the left third.
-    let third = sweep.rows[0].q + (sweep.rows[sweep.rows.len() - 1].q - sweep.rows[0].q) / 3;
-    let below = 1.0 - label_at(shown.len()) / size[1];
-    let left_points = series.iter().flatten().filter(|p| p.0 <= f64::from(third));
-    let needed = left_points.map(|p| range.0 * (p.1 / range.0).powf(1.0 / below));
-    let range = (range.0, needed.fold(range.1, f64::max));
     let panel = Panel {
-        at: [left, 214.0],
+        at: [left, 250.0],
         size,
         x: winding_axis(sweep),
-        y: Axis::log("Rate *R*^{2}/Γ*Lt*", range),
+        y: Axis::log("Rate (*R*^{2}/Γ*L*) / *t*", range).with_room(label_at(shown.len()), size[1]),
     };
     let mut plots = Vec::new();
-    for ((label, color, _), points) in shown.iter().zip(series) {
+    for (rate, points) in shown.iter().zip(series) {
         for (x, y) in &points {
-            table.row(&[&format!("{letter} {label}"), &x.to_string()], &[*x, *y]);
+            table.row(
+                &[&format!("{letter} {}", rate.share), &x.to_string()],
+                &[*x, *y],
+            );
         }
         let dots = ScatterPlot::new()
             .with_data(points.clone())
-            .with_color(*color)
+            .with_color(rate.color)
+            .with_marker(rate.marker)
             .with_size(3.0);
-        plots.push(line(points, color, 1.4));
+        plots.push(line(points, rate.color, 1.4));
         plots.push(Plot::Scatter(dots));
     }
     panel.draw(canvas, plots, &[]);
     mark_onset(sweep, canvas, &panel);
-    for (k, (label, color, _)) in shown.iter().enumerate() {
+    for (k, rate) in shown.iter().enumerate() {
         let y = panel.at[1] + label_at(k);
-        let style = Style::default().bold().halo().size(9.5).color(color);
-        canvas.text(panel.at[0] + 8.0, y, label, style);
+        let style = Style::default().halo().size(9.5).color(rate.color);
+        canvas.text(panel.at[0] + 8.0, y, rate.label, style);
     }
 }
 

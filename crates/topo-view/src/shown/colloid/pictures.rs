@@ -3,7 +3,7 @@
 use crate::data::{DefectLine, Slice, rings, slices};
 use crate::error::ViewError;
 use crate::figures::Drawn;
-use crate::figures::nematic::{colloid_at, profile_bar, slice};
+use crate::figures::nematic::{colloid_at, particle_bar, profile_bar, slice};
 use crate::figures::series::Table;
 use crate::plot::canvas::Canvas;
 use crate::plot::solids::Solids;
@@ -66,7 +66,9 @@ fn draw_rings(cases: &Cases) -> Result<Option<Drawn>, ViewError> {
     let across = shown.len().min(4);
     let n_lines = shown.len().div_ceil(4);
     let (pitch, tall) = ([176.0, 148.0], 148.0 * n_lines as f64);
-    let mut notes = vec!["Rings are coloured by their local cross-section.".to_owned()];
+    let mut notes = vec![
+        "Ring: local cross-section, grey where it is not determined. Particle: x component of the surface director.".to_owned(),
+    ];
     if shown.len() < all.len() {
         let text = format!(
             "{} of {} cases are shown, picked evenly.",
@@ -96,6 +98,7 @@ fn draw_rings(cases: &Cases) -> Result<Option<Drawn>, ViewError> {
         }
     }
     profile_bar(&mut canvas, [16.0, tall + 8.0], [150.0, 7.0], 8.5);
+    particle_bar(&mut canvas, [192.0, tall + 8.0], [150.0, 7.0], 8.5);
     canvas.footnote(&notes);
     Ok(Some(Drawn {
         picture: canvas.finish()?,
@@ -122,11 +125,11 @@ fn draw_slices(cases: &Cases) -> Result<Option<Drawn>, ViewError> {
     };
     let [half_x, half_z] = first.half_size();
     let unit = (160.0 / (2.0 * half_x)).min(150.0 / (2.0 * half_z));
-    let mut canvas = Canvas::new(696.0, 2.0 * half_z * unit + 72.0, 3.0);
+    let mut canvas = Canvas::new(696.0, 2.0 * half_z * unit + 54.0 + slice::KEY_HEIGHT, 3.0);
     slice::moments(&mut canvas, &after, &rings(&folder)?, radius)?;
     let label = cases.label(row);
     canvas.text(12.0, 12.0, &label, Style::default().bold().size(9.5));
-    let note = "Director (green), velocity (arrows, each with its own scale), vorticity (colour), defect line (red).";
+    let note = "Director (green), velocity (arrows), vorticity (colour), defect line (red); each picture has its own scales.";
     canvas.footnote(&[note.to_owned()]);
     let mut table = Table::new("case,time,x,z,order,nx,ny,nz,ux,uz,vorticity");
     for slice in after {
