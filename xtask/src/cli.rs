@@ -32,6 +32,7 @@ impl Command {
             Self::Fuzz(_) => "fuzz",
             Self::Test(_) => "test",
             Self::Ci => "ci",
+            Self::Scenes => "scenes",
             Self::Docs => "docs",
             Self::Bench(_) => "bench",
         }
@@ -105,6 +106,8 @@ pub enum Command {
     Test(TestArgs),
     /// Everything that must pass before a change lands: fmt, clippy, docs, packages, tests.
     Ci,
+    /// Write the reference of scene files (docs/scenes.md, docs/scene.schema.json) from the types that read them.
+    Scenes,
     /// Build the documentation: rustdoc with typeset equations into target/doc, and the site (tutorial, pages, Python API, search) into target/site.
     Docs,
     /// Run the benchmarks and print a table.

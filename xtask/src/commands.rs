@@ -10,6 +10,7 @@ mod packages;
 mod python;
 mod record;
 mod rustdoc;
+mod scenes;
 mod test;
 mod tradeoff;
 
@@ -41,6 +42,7 @@ pub fn dispatch(cli: Cli) -> Result<ExitCode, CliError> {
         Command::Fuzz(args) => fuzz::run(&args),
         Command::Test(args) => test::run(&args),
         Command::Ci => ci::run(),
+        Command::Scenes => scenes::run(),
         Command::Docs => docs(&cargo::target()),
         Command::Bench(args) => bench::run(&args),
     }

@@ -8,10 +8,12 @@ use topo_lab::Shard;
 mod count;
 mod knot;
 mod quality;
+mod scene;
 
 pub use knot::{IdentifyArgs, KnotArgs, KnotCommand, TightenArgs};
 use quality::OF_STUDIES;
 pub use quality::{OF_FIGURES, quality};
+pub use scene::{NewArgs, SceneArgs, SceneCommand};
 
 /// Topological batteries: knotted elastic fibres and nematic colloids, charged, discharged and drawn.
 #[derive(Debug, Parser)]
@@ -68,6 +70,11 @@ impl Command {
             Self::Extremes(_) => "extremes",
             Self::Compare(_) => "compare",
             Self::Export(_) => "export",
+            Self::Scene(args) => match args.command {
+                SceneCommand::Check { .. } => "scene check",
+                SceneCommand::New(_) => "scene new",
+                SceneCommand::Schema => "scene schema",
+            },
             Self::Knot(args) => match args.command {
                 KnotCommand::Tighten(_) => "knot tighten",
                 KnotCommand::Identify(_) => "knot identify",
@@ -143,6 +150,8 @@ pub enum Command {
     Export(ExportArgs),
     /// The knot generator: tighten a knot, name a curve, look at the table.
     Knot(KnotArgs),
+    /// Scene files: check them, begin one, describe them to an editor.
+    Scene(SceneArgs),
 }
 
 /// What is measured of the programs themselves.

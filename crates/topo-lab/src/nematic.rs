@@ -25,8 +25,9 @@ pub use case::NematicCase;
 pub use field::FieldSnapshot;
 pub use frames::{NematicFrame, nematic_frames};
 pub use identity::RESULTS_VERSION as NEMATIC_RESULTS_VERSION;
-pub use onset::{BucklingCase, BucklingRow, buckling_cases, buckling_study};
 #[cfg(test)]
+pub(crate) use keys::COLLOID_KEYS;
+pub use onset::{BucklingCase, BucklingRow, buckling_cases, buckling_study};
 pub(crate) use probe::COLLOID_PROBE;
 pub use scene::NematicScene;
 pub(crate) use scene::fit;

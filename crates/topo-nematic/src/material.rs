@@ -1,5 +1,6 @@
 //! The nematic material: bulk and elastic constants, mobility, flow alignment, viscosity.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use topo_core::{InvalidValue, finite, positive};
 
@@ -21,28 +22,37 @@ use crate::tensor::{Tensor5, contract, square_traceless};
 ///
 /// [patil2020discharging]: https://doi.org/10.1103/PhysRevResearch.2.043196
 /// [beris1994]: https://doi.org/10.1093/oso/9780195076943.001.0001
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Material {
     /// A, in L/ξ_N².
+    #[schemars(extend("x-unit" = "L/ξ_N²"), example = -0.1)]
     pub a: f64,
     /// B, in L/ξ_N².
+    #[schemars(extend("x-unit" = "L/ξ_N²"), example = -2.0)]
     pub b: f64,
     /// C, in L/ξ_N².
+    #[schemars(extend("x-unit" = "L/ξ_N²", "exclusiveMinimum" = 0), example = 2.0)]
     pub c: f64,
     /// Elastic constant L: 1 in reduced units.
+    #[schemars(extend("x-unit" = "L", "exclusiveMinimum" = 0), example = 0.9)]
     pub elastic_constant: f64,
     /// Second elastic constant L_2, in L; leave it out and no term is modelled.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("x-unit" = "L", "x-default" = "not modelled"), example = 0.1)]
     pub second_elastic_constant: Option<f64>,
     /// Rotational mobility Γ, of dQ/dt = Γ H: 1 in reduced units. In the original paper: "rotational viscosity parameter".
+    #[schemars(extend("x-unit" = "Γ", "exclusiveMinimum" = 0), example = 2.0)]
     pub rotational_mobility: f64,
     /// Flow alignment χ: no unit.
+    #[schemars(extend("x-unit" = "1"), example = 0.5)]
     pub flow_alignment: f64,
     /// Isotropic viscosity η, in 1/Γ.
+    #[schemars(extend("x-unit" = "1/Γ", "exclusiveMinimum" = 0), example = 1.0)]
     pub viscosity: f64,
     /// Order S at surfaces and of start fields: no unit; the equilibrium order when left out.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("x-unit" = "1", "x-default" = "the equilibrium order", "exclusiveMinimum" = 0), example = 0.5)]
     pub surface_order: Option<f64>,
 }
 

@@ -1,6 +1,7 @@
 //! Storage precision of fields: f64 or f32; sums are in f64 with either.
 
 use fearless_simd::{Simd, SimdFloatElement};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// A number that fields are stored in: `f64` or `f32`.
@@ -45,7 +46,7 @@ impl Real for f32 {
 }
 
 /// Precision in which the field is stored while it is advanced.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Precision {
     /// 8 bytes per number.

@@ -53,36 +53,6 @@ impl Refusal {
             ..Self::default()
         }
     }
-
-    /// A file that is no scene: the parser's message shows the line, and what stands in it.
-    fn no_scene(path: &std::path::Path, message: &str, whole: String) -> Self {
-        let place = message.split_once("at line ").map(|(_, rest)| rest);
-        let digits = |text: &str| {
-            text.split(|c: char| !c.is_ascii_digit())
-                .next()?
-                .parse()
-                .ok()
-        };
-        let line: Option<usize> = place.and_then(digits);
-        let shown: Option<Box<str>> = message.lines().find_map(|text| {
-            let (number, shown) = text.split_once(" | ")?;
-            number.trim().parse::<usize>().ok()?;
-            Some(shown.trim().into())
-        });
-        let (key, value) = match shown.as_deref().and_then(|text| text.split_once('=')) {
-            Some((key, value)) => (Some(key.trim().into()), Some(value.trim().into())),
-            None => (shown, None),
-        };
-        Self {
-            class: Class::Scene,
-            message: whole,
-            file: Some(path.display().to_string().into()),
-            line,
-            key,
-            value,
-            remedy: message.trim_end().lines().last().map(Into::into),
-        }
-    }
 }
 
 impl From<InvalidValue> for Refusal {
@@ -152,21 +122,14 @@ impl From<LabError> for Refusal {
             ..Self::default()
         };
         match error {
-            LabError::SceneValue {
-                path,
-                line,
-                key,
-                value,
-                remedy,
-            } => Self {
-                file: Some(path.display().to_string().into()),
-                line,
-                key: Some(key.into()),
-                value: Some(value.into()),
-                remedy: Some(remedy.into()),
+            LabError::Scene(fault) => Self {
+                file: Some(fault.file.into()),
+                line: fault.line,
+                key: Some(fault.key.into()).filter(|key: &Box<str>| !key.is_empty()),
+                value: Some(fault.found.into()),
+                remedy: Some(fault.expected.into()),
                 ..scene
             },
-            LabError::Scene { path, message } => Self::no_scene(&path, &message, whole),
             LabError::SceneName { path, reason } => Self {
                 file: Some(path.display().to_string().into()),
                 remedy: Some(reason.into()),

@@ -1,5 +1,6 @@
 //! The parameters of a rod in a scene: material, twist, contact, friction, the reading of L/h, and the accuracy.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use topo_core::{finite, in_range, positive};
 
@@ -9,7 +10,7 @@ use crate::RodError;
 ///
 /// The ropelengths of the knots to seven crossings run from 32.7 to 65.7 radii, so one slenderness cannot be literal for all:
 /// either the tube, the length or the material must differ from the nominal one.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Reading {
     /// L as given; the contact diameter shrinks to fit, the friction range stays 2h.
@@ -49,10 +50,11 @@ pub struct Tube {
 }
 
 /// Contact between strands: the stiffness k_c of the penalty, in units of E_b/h³ per area and length squared.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct ContactParameters {
     /// Stiffness k_c, in E_b/h³.
+    #[schemars(range(min = 1e-6, max = 1e9), extend("x-unit" = "E_b/h³"), example = 50.0)]
     pub stiffness: f64,
 }
 
@@ -63,7 +65,7 @@ impl Default for ContactParameters {
 }
 
 /// The range of friction.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum FrictionRange {
     /// As the reading says: 2h, or the contact diameter for `tight`.
@@ -72,16 +74,20 @@ pub enum FrictionRange {
     /// The contact diameter d_c.
     Contact,
     /// A multiple of the contact diameter.
-    TimesContact(f64),
+    TimesContact(
+        #[schemars(range(min = 1e-3, max = 10), extend("x-unit" = "d_c"), example = 1.1)] f64,
+    ),
 }
 
 /// Friction between strands.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct FrictionParameters {
     /// η_f/η: no unit.
+    #[schemars(range(min = 0, max = 1e6), extend("x-unit" = "1"), example = 0.2)]
     pub ratio: f64,
     /// Its range.
+    #[schemars(example = FrictionRange::Contact)]
     pub range: FrictionRange,
 }
 
@@ -191,7 +197,7 @@ impl RodParameters {
 }
 
 /// Which integrator of `topo-core` advances the rod.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum IntegratorKind {
     /// Linearly implicit, four stages, order 3.

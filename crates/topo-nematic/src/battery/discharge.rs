@@ -15,6 +15,7 @@ mod resume;
 mod run;
 mod system;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use topo_core::{StopReason, finite, in_range, positive};
 
@@ -25,22 +26,28 @@ use super::switch::SwitchedNematic;
 use crate::{FlowParameters, NematicError, NematicState, Precision};
 
 /// How far a discharge is followed and how often it is sampled.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct DischargeSettings {
     /// The run ends when this share of the stored energy is released: of the energy after the switch, above that of the final
     /// state.
+    #[schemars(range(min = 1e-6, max = 0.999_999_999), extend("x-unit" = "1"), example = 0.99)]
     pub until_released: f64,
     /// Longest time followed, in R²/(Γ L).
+    #[schemars(extend("x-unit" = "R²/(Γ L)", "exclusiveMinimum" = 0), example = 5.0)]
     pub longest: f64,
     /// First output time after the switch, in R²/(Γ L).
+    #[schemars(extend("x-unit" = "R²/(Γ L)", "exclusiveMinimum" = 0), example = 1e-3)]
     pub first_output: f64,
     /// Output times per decade.
+    #[schemars(range(min = 1e-3, max = 1e6), extend("x-unit" = "1"), example = 16.0)]
     pub outputs_per_decade: f64,
     /// Order below which a cell belongs to the defect ring.
+    #[schemars(extend("x-unit" = "1"), example = 0.3)]
     pub ring_threshold: f64,
     /// The flow; leave it out and none is modelled.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(skip)]
     pub flow: Option<FlowParameters>,
 }
 

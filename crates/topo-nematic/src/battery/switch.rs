@@ -2,6 +2,7 @@
 
 use std::sync::OnceLock;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::NematicBattery;
@@ -17,7 +18,7 @@ use crate::real::Real;
 use crate::{NematicError, NematicParameters, NematicState, Particle};
 
 /// What the surface does after the switch.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum SwitchTarget {
@@ -41,13 +42,15 @@ impl Default for SwitchTarget {
 }
 
 /// How the anchoring is switched.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct SwitchSettings {
     /// What the surface is switched to.
+    #[schemars(example = SwitchTarget::Keep)]
     pub to: SwitchTarget,
     /// Duration of the switch, in τ_N; at once when left out.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("x-unit" = "τ_N", "x-default" = "at once", "exclusiveMinimum" = 0), example = 1.0)]
     pub ramp: Option<f64>,
 }
 

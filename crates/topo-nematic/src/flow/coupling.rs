@@ -1,6 +1,7 @@
 //! Director and flow together.
 
 use fearless_simd::Level;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use topo_core::{finite, in_range, positive};
 
@@ -17,31 +18,35 @@ use crate::stokes::{
 };
 
 /// Which solver computes the flow.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum FlowSolver {
     /// Spectral where x and y are periodic, else sparse.
     #[default]
     Auto,
-    /// Fourier modes along x and y: [`Spectral`].
+    /// By Fourier modes along x and y, which are periodic then.
     Spectral,
-    /// Any sides: [`Sparse`].
+    /// For any sides.
     Sparse,
 }
 
 /// How the flow is computed.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct FlowParameters {
     /// Root mean square velocity left on the particle's boundary, over that without the particle.
+    #[schemars(extend("x-unit" = "1", "exclusiveMinimum" = 0), example = 0.02)]
     pub boundary_residual: f64,
     /// What drives the fluid besides the director.
     pub drive: Drive,
     /// Which solver computes the flow.
+    #[schemars(example = FlowSolver::Sparse)]
     pub solver: FlowSolver,
     /// Relative residual of the sparse solver.
+    #[schemars(range(min = 1e-14, max = 0.1), extend("x-unit" = "1"), example = 1e-6)]
     pub solver_tolerance: f64,
     /// Most memory the flow may take, in bytes.
+    #[schemars(extend("x-unit" = "bytes"), example = 8_000_000_000_u64)]
     pub memory_limit: u64,
 }
 

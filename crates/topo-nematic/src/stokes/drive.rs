@@ -1,5 +1,6 @@
 //! What drives the fluid besides the director: a body force, moving walls, a mean flow.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use topo_core::finite;
 
@@ -10,14 +11,17 @@ use crate::stokes::{MacField, StokesError};
 ///
 /// A wall that moves with U acts on its neighbours as the force 2 η U/h², since the ghost value 2U − u replaces −u. So every
 /// drive is a force for a solver.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Drive {
     /// Uniform force per volume, in L/ξ_N³.
+    #[schemars(extend("x-unit" = "L/ξ_N³", "examples" = [[0.001, 0.0, 0.0]]))]
     pub body_force: [f64; 3],
     /// Velocity of the lower and the upper wall along each axis, in ξ_N/τ_N: tangential.
+    #[schemars(extend("x-unit" = "ξ_N/τ_N", "examples" = [[[[0.0, 0.0, 0.0], [0.0, 0.0, 0.0]], [[0.0, 0.0, 0.0], [0.0, 0.0, 0.0]], [[-0.01, 0.0, 0.0], [0.01, 0.0, 0.0]]]]))]
     pub wall_velocity: [[[f64; 3]; 2]; 3],
     /// Mean velocity, in ξ_N/τ_N; only where all sides are periodic.
+    #[schemars(extend("x-unit" = "ξ_N/τ_N", "examples" = [[0.01, 0.0, 0.0]]))]
     pub mean_velocity: [f64; 3],
 }
 
