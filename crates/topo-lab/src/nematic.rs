@@ -28,6 +28,7 @@ pub use identity::RESULTS_VERSION as NEMATIC_RESULTS_VERSION;
 #[cfg(test)]
 pub(crate) use keys::COLLOID_KEYS;
 pub use onset::{BucklingCase, BucklingRow, buckling_cases, buckling_study};
+#[cfg(test)]
 pub(crate) use probe::COLLOID_PROBE;
 pub use scene::NematicScene;
 pub(crate) use scene::fit;

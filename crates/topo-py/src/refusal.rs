@@ -125,7 +125,7 @@ impl From<LabError> for Refusal {
             LabError::Scene(fault) => Self {
                 file: Some(fault.file.into()),
                 line: fault.line,
-                key: Some(fault.key.into()).filter(|key: &Box<str>| !key.is_empty()),
+                key: (!fault.key.is_empty()).then(|| fault.key.into()),
                 value: Some(fault.found.into()),
                 remedy: Some(fault.expected.into()),
                 ..scene

@@ -73,9 +73,9 @@ impl Keys {
     }
 
     fn table(&self, table: &str) -> Option<&Value> {
-        let parts = table.split('.').filter(|part| !part.is_empty());
-        parts.fold(Some(self.schema()), |node, part| {
-            let inner = node?.get("properties")?.get(part)?;
+        let mut parts = table.split('.').filter(|part| !part.is_empty());
+        parts.try_fold(self.schema(), |node, part| {
+            let inner = node.get("properties")?.get(part)?;
             alternatives(inner)
                 .into_iter()
                 .find(|kind| is(kind, "object"))
