@@ -125,7 +125,9 @@ impl From<LabError> for Refusal {
             LabError::Scene(fault) => Self {
                 file: Some(fault.file.into()),
                 line: fault.line,
-                key: (!fault.key.is_empty()).then(|| fault.key.into()),
+                key: Some(fault.key)
+                    .filter(|key| !key.is_empty())
+                    .map(Into::into),
                 value: Some(fault.found.into()),
                 remedy: Some(fault.expected.into()),
                 ..scene
