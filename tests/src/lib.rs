@@ -21,3 +21,8 @@ pub struct Readme;
 #[cfg(doctest)]
 #[doc = include_str!("../../docs/extending.md")]
 pub struct Extending;
+
+/// As [`Readme`].
+#[cfg(doctest)]
+#[doc = include_str!("../../docs/tutorial.md")]
+pub struct Tutorial;

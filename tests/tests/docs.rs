@@ -1,8 +1,10 @@
-//! What the documentation promises exists: every test that it names, every work that it cites.
+//! What the documentation promises exists: the tests that it names, the works that it cites, its equations typeset.
 
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::Command;
+use topo_view::Outside;
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
@@ -181,6 +183,60 @@ fn docs_cite_only_known_works() {
     }
 }
 
+/// Keys of the works in docs/references.bib with the address of each that has one.
+fn addresses(bib: &str) -> Vec<(&str, Option<String>)> {
+    let field = |entry: &str, name: &str| {
+        let value = entry.split_once(&format!("{name} = {{"))?.1;
+        Some(value[..value.find("}\n")?].to_owned())
+    };
+    let entries = bib.split("\n@").skip(1);
+    let one = |entry| {
+        let key = str::split(entry, ['{', ',']).nth(1).unwrap();
+        // as an address has them
+        let doi = field(entry, "doi").map(|d| d.replace('<', "%3C").replace('>', "%3E"));
+        let doi = doi.map(|d| format!("https://doi.org/{d}"));
+        (key, doi.or_else(|| field(entry, "url")))
+    };
+    entries.map(one).collect()
+}
+
+/// The comments that document items, without code between their lines.
+fn documentation(text: &str) -> Vec<String> {
+    let code = text.split("#[cfg(test)]\nmod ").next().unwrap();
+    let is_comment = |l: &str| l.starts_with("///") || l.starts_with("//!");
+    let lines: Vec<&str> = code.lines().map(str::trim).collect();
+    let blocks = lines.split(|l| !is_comment(l));
+    blocks.map(|b| b.join("\n")).collect()
+}
+
+/// A work that the documentation of an item cites is a link to the address that docs/references.bib has of it.
+#[test]
+fn docs_link_the_works_they_cite() {
+    let bib = fs::read_to_string(root().join("docs/references.bib")).unwrap();
+    let addresses = addresses(&bib);
+    let crates = root().join("crates");
+    let mut n = 0;
+    for (path, text) in &sources() {
+        if !path.starts_with(&crates) || path.ends_with("tests.rs") {
+            continue;
+        }
+        for block in documentation(text) {
+            for (key, address) in &addresses {
+                let Some(address) = address else { continue };
+                let file = path.display();
+                let is_bare = block.contains(&format!("`{key}`"));
+                assert!(!is_bare, "{file} cites {key} without a link");
+                if block.contains(&format!("[{key}]")) {
+                    let is_linked = block.contains(&format!("[{key}]: {address}"));
+                    assert!(is_linked, "{file} does not lead from {key} to {address}");
+                    n += 1;
+                }
+            }
+        }
+    }
+    assert!(n > 30, "only {n} links");
+}
+
 /// Every page with a program in Rust is among the documentation tests of this crate.
 #[test]
 fn docs_with_rust_are_compiled() {
@@ -245,4 +301,111 @@ fn contributing_names_only_existing_files() {
         there.collect(),
         "the table of crates in CONTRIBUTING.md"
     );
+}
+
+/// The text of every `math` block in the comments of the sources, with its file.
+fn equations() -> Vec<(PathBuf, String)> {
+    let mut found = Vec::new();
+    for (path, text) in sources() {
+        let mut open: Option<String> = None;
+        for line in text.lines().map(str::trim) {
+            let comment = line.strip_prefix("///").or(line.strip_prefix("//!"));
+            match (comment.map(str::trim), &mut open) {
+                (Some("```math"), None) => open = Some(String::new()),
+                (Some("```"), Some(equation)) => {
+                    found.push((path.clone(), std::mem::take(equation)));
+                    open = None;
+                }
+                (Some(text), Some(equation)) => *equation += &format!("{text}\n"),
+                _ => {}
+            }
+        }
+        assert_eq!(open, None, "{}: an equation without end", path.display());
+    }
+    assert!(found.len() > 50, "only {} equations found", found.len());
+    found
+}
+
+/// Letters beyond ASCII are not LaTeX: KaTeX would set them in another font.
+#[test]
+fn docs_have_equations_in_latex() {
+    for (path, text) in equations() {
+        assert!(text.is_ascii(), "{}: {text}", path.display());
+    }
+}
+
+/// What happened in the page becomes its title.
+const PROBE: &str = r#"<script>
+addEventListener('load', async () => {
+  await document.fonts.ready;
+  const fonts = [...document.fonts].filter((f) => f.family.startsWith('KaTeX'));
+  const left = [...document.querySelectorAll('pre.language-math')].map((e) => e.textContent);
+  const report = [document.querySelectorAll('.katex-display').length, left.length,
+    fonts.filter((f) => f.status === 'loaded').length, fonts.filter((f) => f.status === 'error').length];
+  document.title = 'REPORT' + report.join(',') + ';' + left.join(' | ');
+});
+</script>"#;
+
+/// A page of rustdoc with these equations, with the header and KaTeX of `cargo xtask docs` and the probe.
+fn page_of(equations: &[(PathBuf, String)], folder: &Path) -> PathBuf {
+    let assets = root().join("xtask/rustdoc");
+    let mut source = String::new();
+    for (_, text) in equations {
+        source += "//! ```math\n";
+        source.extend(text.lines().map(|l| format!("//! {l}\n")));
+        source += "//! ```\n";
+    }
+    let file = folder.join("equations.rs");
+    fs::write(&file, source).unwrap();
+    let header = folder.join("header.html");
+    let shipped = fs::read_to_string(assets.join("header.html")).unwrap();
+    fs::write(&header, format!("{shipped}{PROBE}")).unwrap();
+    let pages = folder.join("doc");
+    let rustdoc = std::env::var_os("RUSTDOC").unwrap_or_else(|| "rustdoc".into());
+    let mut rustdoc = Command::new(rustdoc);
+    rustdoc.arg(&file).arg("--html-in-header").arg(&header);
+    rustdoc.arg("--out-dir").arg(&pages);
+    assert!(rustdoc.status().unwrap().success());
+    let katex = pages.join("katex");
+    fs::create_dir_all(&katex).unwrap();
+    for name in ["katex.min.js", "katex.min.css"] {
+        fs::copy(assets.join("katex").join(name), katex.join(name)).unwrap();
+    }
+    let style = fs::read_to_string(katex.join("katex.min.css")).unwrap();
+    assert!(style.split("url(").skip(1).all(|u| u.starts_with("data:")));
+    pages.join("equations/index.html")
+}
+
+/// rustdoc makes a page of all equations, and Chromium shows it without a network.
+#[test]
+#[ignore = "needs Chromium: `cargo xtask test` runs it where there is one"]
+fn browser_every_equation_of_the_docs_is_typeset() {
+    let browser = Outside::Browser
+        .find()
+        .unwrap_or_else(|| panic!("{}", Outside::Browser.needs()));
+    let dir = tempfile::tempdir().unwrap();
+    let equations = equations();
+    let page = page_of(&equations, dir.path());
+    let profile = dir.path().join("profile");
+    let shown = Command::new(browser)
+        .args(["--headless", "--no-sandbox", "--disable-dev-shm-usage"])
+        .arg("--host-resolver-rules=MAP * ~NOTFOUND")
+        .arg("--virtual-time-budget=8000")
+        .arg(format!("--user-data-dir={}", profile.display()))
+        .arg("--dump-dom")
+        .arg(format!("file://{}", page.display()))
+        .output()
+        .unwrap();
+    let dom = String::from_utf8_lossy(&shown.stdout);
+    let (report, as_latex) = dom
+        .split_once("<title>REPORT")
+        .and_then(|t| t.1.split_once("</title>")?.0.split_once(';'))
+        .unwrap_or_else(|| panic!("{}", String::from_utf8_lossy(&shown.stderr)));
+    let counts: Vec<usize> = report.split(',').map(|n| n.parse().unwrap()).collect();
+    let [typeset, left, fonts, missing] = counts[..] else {
+        panic!("{report}");
+    };
+    assert_eq!((typeset, left), (equations.len(), 0), "{as_latex}");
+    assert!(fonts >= 4, "only {fonts} fonts used");
+    assert_eq!(missing, 0, "fonts without data");
 }

@@ -294,7 +294,7 @@ fn law_rises_of_the_energy_stay_below_their_sum() {
     assert!(without > 1.5e-3, "nothing to be limited: {without:.2e}");
 }
 
-/// Strands as stiff as the inner range has them touch and stay in touch: the run comes to its end, in few steps.
+/// Strands as stiff as the inner range has them touch and stay in touch: the run finishes, in few steps.
 #[test]
 fn law_stiff_strands_do_not_bounce() {
     for contact in [20.0, 100.0, 500.0] {

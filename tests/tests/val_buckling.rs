@@ -160,7 +160,8 @@ fn val_euler_column_buckles_at_the_critical_load() {
 /// The localised helix of a long rod under tension T and torque M between clamps that approach by D and turn by R.
 ///
 /// ```math
-/// sin(θ/2) = u sech(u s √(T/B)),   u² = 1 − M²/(4BT),   D = 4 u √(B/T),   R = M L/C + 4 arccos(M/(2√(BT)))
+/// \sin\frac{\theta}{2} = u\, \mathrm{sech}\bigl(u s \sqrt{T/B}\bigr), \quad u^2 = 1 - \frac{M^2}{4 B T}, \quad
+/// D = 4 u \sqrt{B/T}, \quad R = \frac{M L}{C} + 4 \arccos\frac{M}{2 \sqrt{B T}}
 /// ```
 ///
 /// The rod starts from the shape of one member of the family with the twist of another; D and R are what it keeps.

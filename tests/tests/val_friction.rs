@@ -46,7 +46,8 @@ fn two_strands(n_edges: usize, angle: f64, gap: f64) -> RodState {
 /// Two strands that slide past each other: the force between them is that of the integral
 ///
 /// ```math
-/// F/A = η_f ∬_{r<ℓ} V ds ds'/r³ = η_f V (2π/sin φ) (1/d − 1/ℓ)
+/// \frac{F}{A} = \eta_f \iint_{r < \ell} \frac{V}{r^3}\, ds\, ds'
+///   = \eta_f V\, \frac{2\pi}{\sin\varphi} \left( \frac1d - \frac1\ell \right)
 /// ```
 ///
 /// for two lines at the angle φ and the distance d, and it opposes the motion.
@@ -120,7 +121,8 @@ fn val_friction_of_two_sliding_rods_matches_the_integral() {
 /// Two strands that cross at a right angle at the distance d, the inflections of a wide figure of eight:
 ///
 /// ```math
-/// e = ∬ V(r) ds ds' = 2π ∫_d^{d_c} V(r) r dr = π k_c d_c⁴ [ln r + 2 d_c/r − d_c²/2r²]_d^{d_c},   k_c = 20
+/// e = \iint V(r)\, ds\, ds' = 2\pi \int_d^{d_c} V(r)\, r\, dr
+///   = \pi k_c d_c^4 \left[ \ln r + \frac{2 d_c}{r} - \frac{d_c^2}{2 r^2} \right]_d^{d_c}, \qquad k_c = 20
 /// ```
 #[test]
 fn val_contact_of_two_crossing_rods_matches_the_integral() {

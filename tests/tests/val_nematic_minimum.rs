@@ -140,10 +140,10 @@ fn law_a_charge_stopped_in_its_check_or_after_a_kick_goes_on_to_the_same_bits() 
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("charge.checkpoint");
         let stop = Interrupt::new();
-        let mut n_told = 0;
+        let mut n_reported = 0;
         let mut note_step = |_: &Progress| {
-            n_told += 1;
-            if n_told == stop_at {
+            n_reported += 1;
+            if n_reported == stop_at {
                 stop.request();
             }
         };

@@ -32,6 +32,7 @@ impl Command {
             Self::Fuzz(_) => "fuzz",
             Self::Test(_) => "test",
             Self::Ci => "ci",
+            Self::Scenes => "scenes",
             Self::Docs => "docs",
             Self::Bench(_) => "bench",
         }
@@ -93,7 +94,7 @@ pub enum Command {
   cargo xtask determinism                           all that the draft figures draw: three times some minutes
   cargo xtask determinism scenes/elastic-quick.toml    a scene instead")]
     Determinism(DeterminismArgs),
-    /// Feed every parser with made-up files: needs cargo-fuzz.
+    /// Feed every parser with generated files: needs cargo-fuzz.
     #[command(after_help = "Examples:
   cargo xtask fuzz                        ten minutes for each parser
   cargo xtask fuzz --minutes 60 vect xyz  an hour for each of two")]
@@ -105,7 +106,9 @@ pub enum Command {
     Test(TestArgs),
     /// Everything that must pass before a change lands: fmt, clippy, docs, packages, tests.
     Ci,
-    /// Build the site of the documentation into target/site: tutorial, pages, Python API, with search.
+    /// Write the reference of scene files (docs/scenes.md, docs/scene.schema.json) from the types that read them.
+    Scenes,
+    /// Build the documentation: rustdoc with typeset equations into target/doc, and the site (tutorial, pages, Python API, search) into target/site.
     Docs,
     /// Run the benchmarks and print a table.
     #[command(after_help = "Examples:

@@ -9,12 +9,15 @@ mod fuzz;
 mod packages;
 mod python;
 mod record;
+mod rustdoc;
+mod scenes;
 mod test;
 mod tradeoff;
 
 use crate::cli::{Cli, Command};
 use crate::workspace::workspace;
 use record::record;
+use std::path::Path;
 use std::process::ExitCode;
 use topo_cli::CliError;
 use topo_cli::commands::{buckling, cost};
@@ -39,10 +42,24 @@ pub fn dispatch(cli: Cli) -> Result<ExitCode, CliError> {
         Command::Fuzz(args) => fuzz::run(&args),
         Command::Test(args) => test::run(&args),
         Command::Ci => ci::run(),
-        Command::Docs => python::docs(&cargo::target()),
+        Command::Scenes => scenes::run(),
+        Command::Docs => docs(&cargo::target()),
         Command::Bench(args) => bench::run(&args),
     }
     .map(|()| ExitCode::SUCCESS)
+}
+
+/// Builds the pages of rustdoc, and the site where there is a Python for it.
+fn docs(target: &Path) -> Result<(), CliError> {
+    if !cargo::step("rustdoc", rustdoc::command(), |_| {})? {
+        return Err(CliError::Step("rustdoc failed".to_owned()));
+    }
+    rustdoc::place_katex(target)?;
+    topo_cli::say!(
+        "written to {}",
+        target.join("doc/topo_core/index.html").display()
+    );
+    python::docs(target)
 }
 
 /// Puts a table into a page of `docs`, if asked for.

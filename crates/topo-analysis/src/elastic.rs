@@ -1,4 +1,4 @@
-//! What tables of rods say.
+//! Analysis of tables of rods.
 
 mod resonance;
 mod table;

@@ -1,4 +1,4 @@
-//! Columns that only some tables have: energies of terms which are not of this workspace.
+//! Columns that only some tables have: energies of terms from outside this workspace.
 
 use std::fmt::Write;
 
@@ -7,8 +7,8 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
 /// Name of the field of a row that becomes columns of their own.
 pub(crate) const FIELD: &str = "further";
 
-/// Energies by name, in their order. A row's field `further` of this type becomes a column a name, at its place: skip it where it is
-/// empty. One cell, as `trap=0.25;wall=1.5`, wherever else a row is kept.
+/// Energies by name, in their order. In a table, a row's field `further` of this type becomes one column per name, at its
+/// place; skip the field where it is empty. Elsewhere it is one text, such as `trap=0.25;wall=1.5`.
 ///
 /// # Validation
 /// `further_energies_are_columns_of_their_name`, `energies_come_back_from_one_cell`
@@ -67,7 +67,7 @@ impl<'de> Deserialize<'de> for Further {
     }
 }
 
-/// The table with a column for each name in its column `further`; as it is without that column.
+/// The table with a column for each name in its column `further`; unchanged without that column.
 ///
 /// A name that the table has already gets `_energy` behind it, as that of the twist has.
 pub(crate) fn expanded(table: Vec<u8>) -> csv::Result<Vec<u8>> {

@@ -1,8 +1,8 @@
-//! What tables of discharges say: discharge times, knot timelines, ensembles and resonances.
+//! Analysis of tables of discharges: discharge times, knot timelines, ensembles and resonances.
 //!
-//! Reading order: [`DischargeTimes`] (when which share of an energy was released) and [`Timeline`] (which knot an open rod is tied in)
-//! of one discharge → [`SweepRow`], [`NematicRow`] (its row of a table) → [`read_table`] → [`ensembles`], [`resonances`] and
-//! [`nematic_resonance`] (what a table says).
+//! Reading order: [`DischargeTimes`] (when which share of an energy was released) and [`Timeline`] (which knot an open rod is
+//! tied in) of one discharge → [`SweepRow`], [`NematicRow`] (its row of a table) → [`read_table`] → [`ensembles`],
+//! [`resonances`] and [`nematic_resonance`] (results of a whole table).
 //!
 //! Elastic energies are in E_0 = E_b h² L and times in T_0 = 2 L η/(h E_b), with L the row's own length; nematic energies in
 //! L ξ_N and times in τ_N.

@@ -1,4 +1,4 @@
-//! What tables of colloids say.
+//! Analysis of tables of colloids.
 
 mod late;
 mod resonance;

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Mean and range of an ensemble, such as the discharge times over near-tied cuts.
+/// Mean and range of an ensemble, such as the discharge times over nearly equal cuts; in the unit of its members.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Spread {
     /// Mean.

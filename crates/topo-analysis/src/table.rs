@@ -15,13 +15,13 @@ pub struct KnotRow {
     pub knot: String,
     /// Vertices of the tight polygon.
     pub vertices: usize,
-    /// Its ropelength.
+    /// Its ropelength, in tube radii.
     pub length_over_radius: f64,
-    /// Published ropelength, if any.
+    /// Published ropelength, in tube radii, if any.
     pub reference: Option<f64>,
     /// Excess over the published one, in per cent.
     pub excess_percent: Option<f64>,
-    /// Writhe.
+    /// Writhe: no unit.
     pub writhe: f64,
     /// Average crossing number.
     pub average_crossing_number: f64,
@@ -35,7 +35,7 @@ pub struct KnotRow {
     pub determinant: u64,
     /// Signature.
     pub signature: i32,
-    /// Processor seconds that the tightening took.
+    /// Processor time that the tightening took, in seconds.
     pub cpu_seconds: f64,
 }
 
@@ -50,7 +50,7 @@ pub fn write_table<T: Serialize>(path: &Path, rows: &[T]) -> Result<(), Analysis
 /// The bytes that [`write_table`] writes; `path` names them in messages.
 ///
 /// # Errors
-/// A row that cannot stand in a table.
+/// A row that cannot be written as a table row.
 pub fn table_bytes<T: Serialize>(path: &Path, rows: &[T]) -> Result<Vec<u8>, AnalysisError> {
     let wrong = |source| AnalysisError::Table {
         path: path.to_owned(),
@@ -66,10 +66,10 @@ pub fn table_bytes<T: Serialize>(path: &Path, rows: &[T]) -> Result<Vec<u8>, Ana
     expanded(table).map_err(wrong)
 }
 
-/// Names of the columns in which a row stands.
+/// Names of the columns of a row.
 ///
 /// # Errors
-/// A row that cannot stand in a table.
+/// A row that cannot be written as a table row.
 pub fn columns<T: Serialize>(row: &T) -> Result<Vec<String>, AnalysisError> {
     let table = table_bytes(Path::new("a row"), std::slice::from_ref(row))?;
     let header = table.split(|byte| *byte == b'\n').next().unwrap_or(&[]);
@@ -77,7 +77,7 @@ pub fn columns<T: Serialize>(row: &T) -> Result<Vec<String>, AnalysisError> {
     Ok(header.split(',').map(str::to_owned).collect())
 }
 
-/// Reads rows of a CSV with a header; columns that the rows do not have are left out.
+/// Reads rows of a CSV with a header; columns that the row type does not have are ignored.
 ///
 /// # Errors
 /// A file that cannot be read or a row that does not fit, with path and line.
@@ -93,7 +93,7 @@ pub fn read_table<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>, AnalysisEr
 /// Reads rows from the bytes of a CSV with a header; `path` names it in messages.
 ///
 /// # Errors
-/// As [`read_table`], but for those of the file system.
+/// As [`read_table`], except those of the file system.
 pub fn parse_table<T: DeserializeOwned>(
     path: &Path,
     bytes: &[u8],
@@ -144,7 +144,7 @@ mod tests {
         assert!(read_table::<SweepRow>(&path).is_err());
     }
 
-    /// Each name is a column behind the standard energies; where the table has such a column, `_energy` tells it apart.
+    /// Each name is a column after the standard energies; where the table already has such a column, `_energy` is appended.
     #[test]
     fn further_energies_are_columns_of_their_name() {
         let row = |case: &str, further: &[(&str, f64)]| SweepRow {

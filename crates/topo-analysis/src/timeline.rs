@@ -1,4 +1,4 @@
-//! Knot types while a cut rod is open, and when it is untied.
+//! Knot types of a cut rod over time, and when it is untied.
 
 use serde::{Deserialize, Serialize};
 use topo_core::Vector3;
@@ -25,13 +25,13 @@ pub struct Timeline {
     samples: Vec<TypedSample>,
 }
 
-/// How types are found: closures a sample, and every how many samples to look before refining.
+/// How types are found: closures per sample, and the stride of samples before refining.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct TimelineSettings {
     /// Closures of the open curve, spread over the sphere; 0: no timeline.
     pub closures: usize,
-    /// Samples between two looks; where two looks differ, all between are typed.
+    /// Stride of the samples that are typed first; where two of them differ, all between are typed.
     pub stride: usize,
 }
 
@@ -45,7 +45,7 @@ impl Default for TimelineSettings {
 }
 
 impl Timeline {
-    /// Types the samples of a discharge: every `stride`-th, and all between two that differ.
+    /// Finds the types of the samples of a discharge: of every `stride`-th, and of all between two that differ.
     ///
     /// # Errors
     /// A curve that runs through itself or is not finite.

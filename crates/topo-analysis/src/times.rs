@@ -8,7 +8,7 @@ use topo_core::DischargeCurve;
 pub struct Interpolated {
     /// The time, in the unit of the curve.
     pub value: f64,
-    /// Difference of the exponential and the linear interpolation between the two steps around it.
+    /// Difference of the exponential and the linear interpolation between the two steps around it, in the unit of the curve.
     pub error: f64,
 }
 
@@ -36,7 +36,7 @@ impl DischargeTimes {
         Self::between(curve, parts, [start, 0.0], shares)
     }
 
-    /// As [`of`](Self::of), shares counting from an energy `start` down to that of a final state, `end`; none where nothing is
+    /// As [`of`](Self::of), with shares of the energy between `start` and that of a final state, `end`; none where nothing is
     /// stored between them.
     pub fn between(
         curve: &DischargeCurve,
@@ -82,7 +82,7 @@ impl DischargeTimes {
         }
     }
 
-    /// Time at which `share` was released, if that share was asked for and reached.
+    /// Time at which `share` was released, if that share was requested and reached.
     pub fn at(&self, share: f64) -> Option<Interpolated> {
         let k = self.shares.iter().position(|s| (s - share).abs() < 1e-12)?;
         self.times[k]

@@ -1,10 +1,10 @@
-//! What is doubtful about a run, as tables hold it.
+//! Warnings about a run, as in tables.
 
 use std::fmt;
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-/// One doubt about a run. In tables it is its sentence.
+/// One warning about a run. In tables it is a sentence.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Warning {
     /// The charged rod has another knot type than it was tied with.
@@ -12,7 +12,7 @@ pub enum Warning {
         /// The type that it has.
         found: String,
     },
-    /// The charge did not come to its end.
+    /// The charge did not finish.
     ChargeStopped {
         /// Why.
         reason: String,

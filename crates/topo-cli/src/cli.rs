@@ -8,10 +8,12 @@ use topo_lab::Shard;
 mod count;
 mod knot;
 mod quality;
+mod scene;
 
 pub use knot::{IdentifyArgs, KnotArgs, KnotCommand, TightenArgs};
 use quality::OF_STUDIES;
 pub use quality::{OF_FIGURES, quality};
+pub use scene::{NewArgs, SceneArgs, SceneCommand};
 
 /// Topological batteries: knotted elastic fibres and nematic colloids, charged, discharged and drawn.
 #[derive(Debug, Parser)]
@@ -68,6 +70,11 @@ impl Command {
             Self::Extremes(_) => "extremes",
             Self::Compare(_) => "compare",
             Self::Export(_) => "export",
+            Self::Scene(args) => match args.command {
+                SceneCommand::Check { .. } => "scene check",
+                SceneCommand::New(_) => "scene new",
+                SceneCommand::Schema => "scene schema",
+            },
             Self::Knot(args) => match args.command {
                 KnotCommand::Tighten(_) => "knot tighten",
                 KnotCommand::Identify(_) => "knot identify",
@@ -107,8 +114,9 @@ pub enum Command {
     Figures(FiguresArgs),
     /// Run the scene of a file: charge, cut, discharge.
     #[command(after_help = "Examples:
-  topo run scenes/trefoil.toml
-  topo run scenes/trefoil.toml --cuts all:8 --out my-results
+  topo scene new my-scene.toml            a scene to begin with
+  topo run my-scene.toml
+  topo run my-scene.toml --cuts all:8 --out my-results
   topo run scenes/elastic-quick.toml --accuracy 0.02    settings for 2 %, and the error it has
   topo run scenes/nematic-desk.toml --budget \"10 min\"
   topo run scenes/nematic-quick.toml --fields --out fields    for `topo export`")]
@@ -125,7 +133,7 @@ pub enum Command {
   topo extremes --quality standard    every run to its very end")]
     #[command(visible_alias = "stability")]
     Extremes(SystemsArgs),
-    /// Compare the numbers of two results folders to the byte, but for what tells how long they took.
+    /// Compare the numbers of two results folders to the byte, but for times and memory.
     #[command(after_help = "Example:
   topo compare results results-again")]
     Compare(CompareArgs),
@@ -142,6 +150,8 @@ pub enum Command {
     Export(ExportArgs),
     /// The knot generator: tighten a knot, name a curve, look at the table.
     Knot(KnotArgs),
+    /// Scene files: check them, begin one, describe them to an editor.
+    Scene(SceneArgs),
 }
 
 /// What is measured of the programs themselves.
@@ -250,7 +260,7 @@ pub struct WorkArgs {
     /// Number of threads; all processors when left out.
     #[arg(long, value_name = "N", value_parser = count::from(1, count::MOST_JOBS))]
     pub jobs: Option<usize>,
-    /// Compute everything anew.
+    /// Compute everything again.
     #[arg(long)]
     pub fresh: bool,
 }

@@ -10,6 +10,7 @@ mod figures;
 mod folder;
 mod knot;
 mod run;
+pub mod scene;
 mod settings;
 pub mod tradeoff;
 
@@ -35,6 +36,7 @@ pub fn dispatch(
 ) -> Result<ExitCode, CliError> {
     match command {
         Command::Knot(args) => return knot::run(&args),
+        Command::Scene(args) => return scene::run(&args.command, batteries),
         Command::Figures(args) => match &args.folder {
             Some(folder) => folder::run(folder, batteries),
             None => figures::run(&args, workspace),

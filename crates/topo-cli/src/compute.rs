@@ -8,7 +8,7 @@ mod scene;
 
 use crate::error::CliError;
 use crate::interrupt;
-use crate::progress::Progress;
+use crate::progress::{Progress, waiting};
 pub use order::Order;
 use order::more_knots;
 pub use report::Failures;
@@ -41,7 +41,9 @@ pub fn tables(
         ..SweepSettings::new(order.results)
     };
     topo_lab::writable(order.results)?;
-    estimate::tell(&estimate::of_order(order, &settings)?);
+    estimate::print(&waiting("estimating the work", || {
+        estimate::of_order(order, &settings)
+    })?);
     if order.knots && !order.as_is {
         knots(order, &scene, stop, provenance)?;
     }

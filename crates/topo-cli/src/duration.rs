@@ -1,4 +1,4 @@
-//! Times in words.
+//! Times and counts in words.
 
 use std::time::Duration;
 
@@ -11,4 +11,9 @@ pub fn duration(seconds: f64) -> String {
         0..500 => "less than a second".to_owned(),
         _ => HumanDuration(time).to_string(),
     }
+}
+
+/// So many of `what`, whose plural ends in s.
+pub fn count(n: usize, what: &str) -> String {
+    format!("{n} {what}{}", if n == 1 { "" } else { "s" })
 }

@@ -6,6 +6,7 @@ use crate::duration::duration;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::fmt::Display;
 use std::io::IsTerminal;
+use std::sync::mpsc::RecvTimeoutError;
 use std::sync::{Mutex, MutexGuard};
 use std::time::{Duration, Instant};
 use topo_lab::Estimate;
@@ -13,6 +14,8 @@ use work::Work;
 
 /// Shortest time between two plain lines.
 const PAUSE: Duration = Duration::from_secs(5);
+/// Longest time that passes without a word on what is going on.
+const SILENCE: Duration = Duration::from_secs(1);
 /// Shortest time between two messages of the bar about parts at work.
 const SHORT_PAUSE: Duration = Duration::from_millis(100);
 /// Shortest time between two plain lines about a part at work.
@@ -51,6 +54,9 @@ impl Progress {
             bar.enable_steady_tick(Duration::from_millis(250));
             bar
         });
+        if bar.is_none() && n > 0 {
+            note!("{label}: 0/{n}");
+        }
         let now = Instant::now();
         Self {
             label: label.to_owned(),
@@ -137,8 +143,23 @@ impl Progress {
     }
 }
 
+/// Does work of which nothing is seen meanwhile; when that takes longer than a second, `what` says what is going on.
+pub fn waiting<T>(what: &str, work: impl FnOnce() -> T) -> T {
+    std::thread::scope(|scope| {
+        let (done, waits) = std::sync::mpsc::channel::<()>();
+        scope.spawn(move || {
+            if waits.recv_timeout(SILENCE) == Err(RecvTimeoutError::Timeout) {
+                note!("{what}");
+            }
+        });
+        let result = work();
+        drop(done);
+        result
+    })
+}
+
 impl State {
-    /// The time left, if anything tells it, and what is done.
+    /// The time left, if it is known, and what is done.
     fn text(&self, what: &str) -> String {
         match self.work.left(self.start.elapsed().as_secs_f64()) {
             Some(left) => format!("{} left, {what}", duration(left)),

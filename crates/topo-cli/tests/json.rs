@@ -45,7 +45,7 @@ fn object(folder: &Path, arguments: &[&str]) -> (Value, i32) {
 }
 
 #[test]
-fn a_sweep_is_told_from_its_run_to_its_pictures() {
+fn a_sweep_is_reported_from_its_run_to_its_pictures() {
     let dir = tempfile::tempdir().unwrap();
     let here = dir.path();
     std::fs::write(here.join("mine.toml"), SCENE).unwrap();
@@ -84,7 +84,7 @@ fn a_sweep_is_told_from_its_run_to_its_pictures() {
 }
 
 #[test]
-fn knots_are_told_with_all_that_is_known_of_them() {
+fn knots_are_shown_with_all_that_is_known_of_them() {
     let dir = tempfile::tempdir().unwrap();
     let here = dir.path();
     let (shown, _) = object(here, &["knot", "show", "8_19"]);
@@ -156,7 +156,7 @@ fn errors_are_objects_with_the_exit_code_of_always() {
 
 #[test]
 #[ignore = "long: minutes of measurements"]
-fn long_measurements_are_told() {
+fn long_measurements_are_reported() {
     let dir = tempfile::tempdir().unwrap();
     for (command, table) in [("tradeoff", "knots"), ("extremes", "knots")] {
         let (value, code) = object(dir.path(), &[command, "--only", table]);

@@ -1,4 +1,4 @@
-//! Small validators of numbers, and the finite-difference check that every energy term must pass.
+//! Checks of single numbers, and the finite-difference check that every energy term must pass.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, thiserror::Error)]
 #[error("{name} = {value} is not allowed: expected {expected}")]
 pub struct InvalidValue {
-    /// Name of the quantity, as the user wrote it.
+    /// Name of the quantity, as in the user's input.
     pub name: String,
     /// The offending value.
     pub value: f64,
@@ -25,7 +25,7 @@ impl InvalidValue {
     }
 }
 
-/// Passes a finite `value`.
+/// Returns `value` if it is finite.
 ///
 /// # Errors
 /// [`InvalidValue`] when `value` is NaN or infinite.
@@ -37,7 +37,7 @@ pub fn finite(name: &str, value: f64) -> Result<f64, InvalidValue> {
     }
 }
 
-/// Passes a finite `value > 0`.
+/// Returns `value` if it is finite and above zero.
 ///
 /// # Errors
 /// [`InvalidValue`] when `value` is NaN, infinite, zero or negative.
@@ -49,7 +49,7 @@ pub fn positive(name: &str, value: f64) -> Result<f64, InvalidValue> {
     }
 }
 
-/// Passes a finite `value >= 0`.
+/// Returns `value` if it is finite and not negative.
 ///
 /// # Errors
 /// [`InvalidValue`] when `value` is NaN, infinite or negative.
@@ -65,7 +65,7 @@ pub fn non_negative(name: &str, value: f64) -> Result<f64, InvalidValue> {
     }
 }
 
-/// Passes a `value` with `low <= value <= high`.
+/// Returns `value` if `low <= value <= high`.
 ///
 /// # Errors
 /// [`InvalidValue`] when `value` is NaN or outside the closed interval.

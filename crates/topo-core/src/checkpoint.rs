@@ -1,4 +1,4 @@
-//! Checkpoints: any serialisable value, bit for bit, in a file that knows whether it is sound.
+//! Checkpoints: any serialisable value, bit for bit, in a file with a checksum.
 
 use std::path::Path;
 
@@ -14,7 +14,7 @@ const DIGEST_LENGTH: usize = 32;
 /// Writes `value` to `path`, atomically.
 ///
 /// Layout: magic word, format version, length and name of `schema`, length of the payload, the payload in postcard's encoding
-/// (floating-point numbers to the bit), and a BLAKE3 digest of all before. `schema` names the type and its version,
+/// (floating-point numbers to the bit), and a BLAKE3 digest of everything before it. `schema` names the type and its version,
 /// such as `rod-run/1`: change it whenever the type changes, since the payload does not describe itself.
 ///
 /// # Errors
@@ -73,7 +73,7 @@ pub fn load_checkpoint<T: DeserializeOwned>(path: &Path, schema: &str) -> Result
 /// Reads the bytes that [`save_checkpoint`] wrote with the same `schema`; `path` names them in messages.
 ///
 /// # Errors
-/// As [`load_checkpoint`], but for those of the file system.
+/// As [`load_checkpoint`], except those of the file system.
 ///
 /// # Validation
 /// `every_flaw_is_found_and_named`
@@ -134,7 +134,7 @@ pub fn parse_checkpoint<T: DeserializeOwned>(
     }
 }
 
-/// Short hash of everything that a case depends on: a checkpoint that holds it is found by its own case only.
+/// Short hash of everything that a case depends on. A case accepts only checkpoints that hold its own hash.
 pub fn case_identity<T: Serialize>(all: &T) -> String {
     match postcard::to_stdvec(all) {
         Ok(bytes) => blake3::hash(&bytes).to_hex()[..32].to_owned(),

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::check::{InvalidValue, in_range, positive};
 
-/// Why a candidate step was refused; a value, since most refusals are answered by a smaller step.
+/// Why a candidate step was refused. A value, not an error: most refusals are followed by a smaller step.
 #[derive(Clone, Debug, PartialEq, Serialize, thiserror::Error)]
 #[non_exhaustive]
 pub enum Rejection {
@@ -13,7 +13,7 @@ pub enum Rejection {
     ErrorTooLarge {
         /// Estimated error, in the unit of the tolerance.
         error: f64,
-        /// The tolerance.
+        /// The tolerance, in the unit of the model's error norm.
         tolerance: f64,
     },
     /// A vertex moved too far in one step.
@@ -21,15 +21,15 @@ pub enum Rejection {
     Displacement {
         /// Index of the vertex.
         vertex: usize,
-        /// How far it moved.
+        /// How far it moved, in the model's unit of length.
         moved: f64,
-        /// How far it may move.
+        /// How far it may move in one step, in the model's unit of length.
         limit: f64,
     },
     /// The energy rose although nothing drives the system.
     #[error("energy rose by {relative:.3e} of itself")]
     EnergyRise {
-        /// Rise over the energy before.
+        /// Rise relative to the energy before the step.
         relative: f64,
     },
     /// Two edges might have passed through each other.
@@ -64,7 +64,7 @@ pub enum Rejection {
         /// What is refused.
         what: &'static str,
     },
-    /// The model refuses to go on at all: no smaller step helps, the run fails.
+    /// The model cannot continue: no smaller step helps, the run fails.
     #[error("run is broken: {what}")]
     Fatal {
         /// What is broken.
@@ -95,11 +95,11 @@ impl Rejection {
 /// \Delta t \leftarrow \Delta t\;\mathrm{clamp}\bigl(s\,(\mathrm{tol}/\mathrm{err})^{1/q},\; 0.1,\; g\bigr)
 /// ```
 ///
-/// with safety s, growth limit g, and q the power with which the error estimate vanishes. The tolerance is the *target*, so a step
-/// is refused only when its error exceeds twice the tolerance: as the next step aims at the tolerance anyway, refusing errors
-/// barely above it would throw away good work and make the step length jitter. After a refusal by a guard the step is
-/// halved, or brought below the limit of the displacement; the step after a refused one may not grow.
-/// [`dt_min`](Self::with_limits) and the limit of trial steps end every run.
+/// with safety s, growth limit g, and q the power with which the error estimate vanishes. The tolerance is the *target*, so a
+/// step is refused only when its error exceeds twice the tolerance: as the next step aims at the tolerance anyway, refusing
+/// errors barely above it would waste work and make the step length jitter. After a refusal by a guard the step is halved, or
+/// brought below the limit of the displacement; the step after a refused one may not grow. [`dt_min`](Self::with_limits) and
+/// the limit of trial steps end every run.
 ///
 /// # Validation
 /// `steps_follow_the_error`, `refusals_shrink_and_are_counted`
@@ -111,7 +111,7 @@ pub struct StepControl {
     max_growth: f64,
     safety: f64,
     max_trials: u64,
-    /// Length proposed for the next step.
+    /// Length proposed for the next step, in the model's unit of time.
     dt: f64,
     just_rejected: bool,
 }
@@ -122,7 +122,8 @@ const MAX_SHRINK: f64 = 0.1;
 const ACCEPTED_TOLERANCES: f64 = 2.0;
 
 impl StepControl {
-    /// Control towards `tolerance` (in the unit of the model's error norm), first step `dt_initial`.
+    /// Control towards `tolerance` (in the unit of the model's error norm), with the first step `dt_initial` (in the model's
+    /// unit of time).
     ///
     /// Defaults: steps within 1e-12..=1e6 times the first one, growth at most 2, safety 0.9, ten million trial steps.
     ///
@@ -182,7 +183,7 @@ impl StepControl {
 
     /// Whether `other` is this control some steps later: the same settings, and a next step within their limits.
     ///
-    /// A control that was read from a file should be asked this before it goes on.
+    /// Check this before continuing with a control that was read from a file.
     pub fn leads_to(&self, other: &Self) -> bool {
         let later = Self {
             dt: other.dt,
@@ -192,22 +193,22 @@ impl StepControl {
         later == *other && (self.dt_min..=self.dt_max).contains(&other.dt)
     }
 
-    /// The tolerance.
+    /// The tolerance, in the unit of the model's error norm.
     pub fn tolerance(&self) -> f64 {
         self.tolerance
     }
 
-    /// Length proposed for the next step.
+    /// Length proposed for the next step, in the model's unit of time.
     pub fn dt(&self) -> f64 {
         self.dt
     }
 
-    /// Shortest step.
+    /// Shortest step, in the model's unit of time.
     pub fn dt_min(&self) -> f64 {
         self.dt_min
     }
 
-    /// Longest step.
+    /// Longest step, in the model's unit of time.
     pub fn dt_max(&self) -> f64 {
         self.dt_max
     }
@@ -217,7 +218,7 @@ impl StepControl {
         self.max_trials
     }
 
-    /// Proposes `dt` for the next step, as after the state changed by other means.
+    /// Proposes `dt` for the next step, for use after the state was changed from outside.
     ///
     /// # Errors
     /// [`InvalidValue`] when `dt` is not a positive finite number.
@@ -252,9 +253,9 @@ impl StepControl {
         self.safety * ratio.powf(1.0 / f64::from(error_order.max(1)))
     }
 
-    /// Takes note of an accepted step of length `dt` and proposes the next one.
+    /// Records an accepted step of length `dt` and proposes the next one.
     ///
-    /// A step that was cut short to end at a wanted time does not shorten the proposal.
+    /// A step that was shortened to end at a requested time does not shorten the proposal.
     pub fn accept(&mut self, dt: f64, error: f64, error_order: u32) {
         let growth = if self.just_rejected {
             1.0
@@ -267,7 +268,7 @@ impl StepControl {
         self.just_rejected = false;
     }
 
-    /// Takes note of a refused step of length `dt` and proposes a shorter one; `None` when that would be below the shortest.
+    /// Records a refused step of length `dt` and proposes a shorter one; `None` when that would be below the shortest step.
     pub fn reject(&mut self, dt: f64, why: &Rejection, error_order: u32) -> Option<f64> {
         let factor = match why {
             Rejection::ErrorTooLarge { error, .. } => {

@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use cpu_time::ThreadTime;
 
-/// Measures the processor time of the thread that started it; elapsed time where the system does not tell.
+/// Measures the processor time of the thread that started it; elapsed time where the system does not provide it.
 #[derive(Debug, Clone)]
 pub struct CpuClock {
     start: Option<Duration>,

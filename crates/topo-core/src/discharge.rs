@@ -1,4 +1,4 @@
-//! The discharge curve: what every battery yields, and all that its analysis knows.
+//! The discharge curve: what every battery produces and every analysis uses.
 
 use serde::{Deserialize, Serialize};
 
@@ -29,14 +29,15 @@ pub enum DischargeError {
     NotIncreasing {
         /// Index of the sample.
         sample: usize,
-        /// Its time.
+        /// Its time, in the unit of the curve.
         time: f64,
     },
 }
 
 /// Stored energy by part and dissipated energy by channel over time.
 ///
-/// Times grow strictly and all numbers are finite, also when read back. Time and energy are in units the battery reports.
+/// Times grow strictly and all numbers are finite, also when read back. Times and energies are in the units that the battery
+/// reports.
 ///
 /// # Validation
 /// `what_does_not_fit_is_refused`
@@ -45,10 +46,10 @@ pub enum DischargeError {
 pub struct DischargeCurve {
     time: Vec<f64>,
     parts: Vec<String>,
-    /// One series a part.
+    /// One series per part.
     stored: Vec<Vec<f64>>,
     channels: Vec<String>,
-    /// One series a channel, cumulated since the start.
+    /// One series per channel, cumulated since the start.
     dissipated: Vec<Vec<f64>>,
 }
 
@@ -119,7 +120,7 @@ impl DischargeCurve {
         }
     }
 
-    /// Appends a sample: `stored` has one entry a part, `dissipated` one a channel.
+    /// Appends a sample: `stored` has one entry per part, `dissipated` one per channel.
     ///
     /// # Errors
     /// [`DischargeError`] when lengths differ, a number is not finite, or `time` does not exceed the last one; the curve then
@@ -177,7 +178,7 @@ impl DischargeCurve {
         &self.parts
     }
 
-    /// Series of the stored energy, one a part.
+    /// Series of the stored energy, one per part.
     pub fn stored(&self) -> &[Vec<f64>] {
         &self.stored
     }
@@ -187,7 +188,7 @@ impl DischargeCurve {
         &self.channels
     }
 
-    /// Series of the dissipated energy, one a channel.
+    /// Series of the dissipated energy, one per channel.
     pub fn dissipated(&self) -> &[Vec<f64>] {
         &self.dissipated
     }

@@ -1,4 +1,4 @@
-//! Errors of the shared ground, one enum a stage; each names the culprit and the remedy.
+//! Errors of this crate, one enum per stage; each names the cause and the remedy.
 
 use crate::check::InvalidValue;
 
@@ -35,7 +35,7 @@ pub enum CurveError {
         "edges could not be made equal with {n_edges} edges (relative spread {spread:.1e}): use more edges or smooth the curve first"
     )]
     UnequalEdges {
-        /// How many edges were wanted.
+        /// How many edges were requested.
         n_edges: usize,
         /// Largest relative deviation from the mean edge that remained.
         spread: f64,

@@ -18,7 +18,7 @@ pub enum FileError {
         /// What the operating system said.
         source: io::Error,
     },
-    /// The file is shorter than it says.
+    /// The file is shorter than its header says.
     #[error("{} is truncated: the write was cut off; start from an earlier file", path.display())]
     Truncated {
         /// The file.
@@ -87,7 +87,7 @@ pub enum FileError {
 }
 
 impl FileError {
-    /// Whether a checkpoint that cannot be used is the reason: a run may then begin anew.
+    /// Whether the reason is a checkpoint that cannot be used: a run can then start from its beginning.
     pub fn is_unusable_checkpoint(&self) -> bool {
         matches!(
             self,
@@ -126,7 +126,7 @@ fn remedy(error: &io::Error) -> &'static str {
     }
 }
 
-/// Writes a file so that at any moment, even after a crash, the path holds either the whole new content or the old one.
+/// Writes a file atomically: at any moment, even after a crash, the path holds either the whole new content or the old one.
 ///
 /// `content` writes to a temporary file in the same folder, which is flushed to disk and then renamed; the folder is flushed as
 /// well. When anything fails, the temporary file is removed and the old content stays.

@@ -1,4 +1,4 @@
-//! What a caller may hang into a run of any battery: an interrupt, a progress report, a checkpoint file, a look at samples.
+//! What a caller can attach to a run of any battery: an interrupt, a progress report, a checkpoint file, a look at samples.
 
 mod progress;
 
@@ -22,14 +22,14 @@ const INTERVAL: Duration = Duration::from_secs(30);
 
 type ProgressFn<'a> = dyn FnMut(&Progress) + 'a;
 
-/// Hooks of a run; none of them changes its result.
+/// Hooks of a run. None of them changes its result.
 ///
 /// `F` is the function that sees samples, as each battery defines it.
 ///
 /// A run with a checkpoint file writes it when the last one is older than the interval, and when it is interrupted; a run that
-/// finds the checkpoint of its own case goes on from there, to the same bits. One set of hooks may serve all phases of a case: each
-/// [names its file](Self::keep_in), and what was finished but not yet written is written together with the next checkpoint. A killed
-/// case thus loses at most what it computed within one interval, and a short one writes nothing.
+/// finds the checkpoint of its own case continues from there and ends with the same bits. One set of hooks may serve all phases
+/// of a case: each [names its file](Self::keep_in), and what was finished but not yet written is written together with the next
+/// checkpoint. So a killed case loses at most the work of one interval, and a short case writes no checkpoint.
 ///
 /// # Validation
 /// `a_checkpoint_is_found_by_its_own_case_only`, `finished_phases_are_written_with_the_next_checkpoint`
@@ -76,7 +76,7 @@ impl<'a, F: ?Sized> RunHooks<'a, F> {
         self
     }
 
-    /// With a checkpoint file, written every `interval` seconds at most (30 by default).
+    /// With a checkpoint file, written at most every `interval` seconds (30 by default).
     pub fn with_checkpoint(mut self, path: &Path, interval: f64) -> Self {
         self.checkpoint = Some(path.to_owned());
         self.interval = Duration::try_from_secs_f64(interval).unwrap_or(INTERVAL);
@@ -95,17 +95,17 @@ impl<'a, F: ?Sized> RunHooks<'a, F> {
         }
     }
 
-    /// The token that asks the run to stop.
+    /// The token by which the run can be stopped.
     pub fn interrupt(&self) -> &Interrupt {
         &self.interrupt
     }
 
-    /// Whether the run is asked to stop.
+    /// Whether a stop of the run was requested.
     pub fn is_interrupted(&self) -> bool {
         self.interrupt.is_requested()
     }
 
-    /// Whether anybody wants to know how far the run is.
+    /// Whether there is a function for progress reports.
     pub fn wants_progress(&self) -> bool {
         self.progress.is_some()
     }
@@ -164,7 +164,7 @@ impl<'a, F: ?Sized> RunHooks<'a, F> {
         self.keeps_checkpoints() && (self.last.elapsed() >= self.interval || self.is_interrupted())
     }
 
-    /// Writes the checkpoint of the phase at work, and what phases before it left to be written.
+    /// Writes the checkpoint of the current phase, and the results of earlier phases that are not written yet.
     ///
     /// # Errors
     /// [`FileError`] when a file cannot be written.
@@ -178,7 +178,7 @@ impl<'a, F: ?Sized> RunHooks<'a, F> {
         self.write()
     }
 
-    /// Keeps the result of a finished phase, so that the case goes on from there: in memory until the next checkpoint is due.
+    /// Keeps the result of a finished phase, in memory until the next checkpoint is due. A resumed case continues from there.
     ///
     /// # Errors
     /// [`FileError`] when a file cannot be written.

@@ -1,4 +1,4 @@
-//! What integrators ask of a model, and what they give back.
+//! What integrators need from a model, and what they return.
 
 mod fire;
 mod rkc2;
@@ -17,8 +17,8 @@ use crate::ledger::Ledger;
 
 /// A system u' = F(u) that integrators can advance.
 ///
-/// Rates, steps and errors are flat vectors of [`n_dof`](Self::n_dof) numbers in the tangent space; how a step changes the
-/// state is the model's own affair, so that updates can be exact (a retraction) where adding numbers is not.
+/// Rates, steps and errors are flat vectors of [`n_dof`](Self::n_dof) numbers in the tangent space; the model decides how a
+/// step changes the state, so that an update can be an exact retraction where adding numbers is not.
 pub trait Model {
     /// Degrees of freedom with their invariants.
     type State: Clone;
@@ -32,7 +32,7 @@ pub trait Model {
     /// A [`Rejection`] when there is no rate at this state.
     fn rate(&mut self, state: &Self::State, rate: &mut [f64]) -> Result<(), Rejection>;
 
-    /// Writes to `to` the state reached from `from` by the finite `step`; `to` holds an unrelated earlier state before.
+    /// Writes to `to` the state reached from `from` by the finite `step`. Before, `to` holds an unrelated earlier state.
     ///
     /// # Errors
     /// A [`Rejection`] when the step leads out of the domain.
@@ -68,8 +68,8 @@ pub trait Model {
         let _ = (from, to, step, dt);
     }
 
-    /// Longest step that [`check`](Self::check) may be expected to let pass, judged by the last accepted one: steps beyond it
-    /// are not tried.
+    /// Longest step that [`check`](Self::check) is expected to accept, estimated from the last accepted step. Longer steps are
+    /// not tried.
     fn longest_step(&self) -> f64 {
         f64::INFINITY
     }
@@ -118,7 +118,7 @@ pub trait SpectralBound: Model {
     fn spectral_radius(&mut self, state: &Self::State) -> Result<f64, Rejection>;
 }
 
-/// What a trial step has to say of itself.
+/// What a trial step reports.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Trial {
     /// Estimated local error, by the model's [`error_norm`](Model::error_norm).
@@ -171,10 +171,10 @@ pub trait Stepper<M: Model> {
     /// The step vector of the last trial.
     fn displacement(&self) -> &[f64];
 
-    /// Tells that the last trial became the state.
+    /// Accepts the last trial as the new state.
     fn accepted(&mut self);
 
-    /// Forgets all about earlier states: call it when the state changed by other means.
+    /// Forgets earlier states: call it after the state was changed from outside.
     fn reset(&mut self);
 
     /// Longest step from `state` that the method can take at all.
@@ -198,6 +198,6 @@ pub trait Stepper<M: Model> {
     /// What it remembers between two steps.
     fn memory(&self) -> StepperMemory;
 
-    /// Goes on from what it remembered, for a model of `n_dof` numbers.
+    /// Continues from such a memory, for a model of `n_dof` numbers.
     fn recall(&mut self, memory: StepperMemory, n_dof: usize);
 }

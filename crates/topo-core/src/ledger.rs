@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 type Name = Cow<'static, str>;
 
-/// A sum that keeps what rounding drops (Neumaier's variant of Kahan's), so that a million small steps add up exactly enough.
+/// A sum that keeps what rounding drops (Neumaier's variant of Kahan's), so that a million small terms add up accurately.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct CompensatedSum {
     sum: f64,
@@ -36,9 +36,9 @@ impl CompensatedSum {
 pub struct EnergyEvent {
     /// What happened.
     pub name: Name,
-    /// When.
+    /// When it happened, in the model's unit of time.
     pub time: f64,
-    /// Stored energy that left the system with it.
+    /// Stored energy that left the system with it, in the model's unit.
     pub removed: f64,
 }
 
@@ -49,7 +49,7 @@ pub struct EnergyEvent {
 /// ```
 ///
 /// vanishes for an exact trajectory, and with the order of the integrator for a computed one. Energies are in the model's unit.
-/// Nothing is allocated but by events.
+/// Only events allocate memory.
 ///
 /// # Validation
 /// `books_balance`, `a_million_small_losses_add_up`
@@ -126,7 +126,7 @@ impl Ledger {
     /// Sets the stored energies, in the order of the terms; the first call also sets where the account starts.
     ///
     /// # Panics
-    /// When `energies` does not have one entry a term.
+    /// When `energies` does not have one entry per term.
     pub fn set_stored(&mut self, energies: &[f64]) {
         self.stored.copy_from_slice(energies);
         let total = self.stored_total();
@@ -147,7 +147,7 @@ impl Ledger {
         self.work.add(energy);
     }
 
-    /// Records that the event `name` removed the stored energy `removed` (negative if it brought some).
+    /// Records that the event `name` removed the stored energy `removed` (negative if it added energy).
     pub fn record_event(&mut self, name: impl Into<Cow<'static, str>>, time: f64, removed: f64) {
         self.removed.add(removed);
         self.events.push(EnergyEvent {
@@ -226,7 +226,7 @@ impl Ledger {
         &self.events
     }
 
-    /// What the account misses: 0 for an exact trajectory.
+    /// Residual of the account: 0 for an exact trajectory.
     pub fn residual(&self) -> f64 {
         (self.stored_total() - self.stored_start()) + self.dissipated_total() - self.work()
             + self.removed_total()

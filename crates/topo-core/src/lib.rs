@@ -1,12 +1,13 @@
 //! Shared ground of the topological batteries: units, curve geometry, integrators, step control, ledger, observers, checkpoints.
 //!
-//! Reading order: `curve` (what is deformed), `integrate` (what a model offers and how it is advanced), `control`, `stepping` and
-//! `simulation` (the loop that ends for certain), `ledger` and `observe` (what is known of a run), `hooks` (what a caller hangs into
-//! it), `discharge` and `phase` (what a battery yields), `file`, `checkpoint` and `snapshot` (what stays on disk), `check` (validators,
-//! and the finite differences that every energy is tested with).
+//! Reading order: `curve` (what is deformed), `integrate` (what a model offers and how it is advanced), `control`, `stepping`
+//! and `simulation` (the loop, which always ends), `ledger` and `observe` (what is recorded of a run), `hooks` (what a caller
+//! attaches to it), `discharge` and `phase` (what a battery produces), `file`, `checkpoint` and `snapshot` (what stays on
+//! disk), `check` (validators, and the finite differences that every energy is tested with).
 //!
-//! Everything here is free of units, but for `units`: a rod's radius, bending modulus and viscosity are 1, and SI values enter and
-//! leave through [`RodUnits`]. Points are nalgebra's vectors, re-exported as [`Vector3`]: a caller needs no nalgebra of the same version.
+//! Only `units` knows units: inside, a rod's radius, bending modulus and viscosity are 1, and SI values enter and leave through
+//! [`RodUnits`]. Points are nalgebra's vectors, re-exported as [`Vector3`]: a caller does not need the same version of
+//! nalgebra.
 
 /// The vectors that everything here takes and gives.
 pub use nalgebra;

@@ -9,10 +9,10 @@ use serde::{Deserialize, Serialize};
 pub enum MinimumState {
     /// λ > λ₀/100: every small change decays.
     Minimum,
-    /// λ < −λ₀/1000: one change grows; a charge that stays there after all kicks says so.
+    /// λ < −λ₀/1000: one change grows: the state is a saddle. A charge that ends there after all kicks reports it.
     Saddle,
-    /// Between: a change that hardly does either. Normal above the buckling, where the energy hardly depends on the direction of the
-    /// tilt: only the lattice ties it, least for odd charges.
+    /// In between: one change hardly grows or decays. Normal above the buckling transition, where the energy hardly depends on
+    /// the direction of the tilt; only the lattice fixes it, least for odd charges.
     Marginal,
 }
 

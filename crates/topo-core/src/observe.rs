@@ -12,7 +12,7 @@ pub struct Sample<'a, S> {
     pub time: f64,
     /// Accepted steps so far.
     pub step: u64,
-    /// Length of the last accepted step; 0 before the first.
+    /// Length of the last accepted step, in the model's unit of time; 0 before the first.
     pub dt: f64,
     /// The state.
     pub state: &'a S,
@@ -20,7 +20,7 @@ pub struct Sample<'a, S> {
     pub ledger: &'a Ledger,
 }
 
-/// Something that looks at a run now and then.
+/// Something that observes a run at scheduled times.
 pub trait Observer<S> {
     /// Looks at one sample.
     fn observe(&mut self, sample: &Sample<'_, S>);
@@ -150,7 +150,7 @@ impl Schedule {
         self
     }
 
-    /// Whether `later` is this schedule, gone through some way.
+    /// Whether `later` is this schedule after some of its times have passed.
     pub fn leads_to(&self, later: &Self) -> bool {
         self.kind == later.kind && self.exact == later.exact && self.next <= later.next
     }

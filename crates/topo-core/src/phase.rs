@@ -9,14 +9,14 @@ use crate::integrate::Counters;
 use crate::ledger::Ledger;
 use crate::stop::StopReason;
 
-/// What only one battery has to say of a phase, and where its keys stand among those that all have.
+/// What only one battery reports of a phase, and where its keys go among the common ones.
 ///
 /// The two functions write the keys before and after the energy account, in the order of the battery's `run.json`.
 pub trait PhaseExtension {
     /// Bytes held by all components together.
     fn n_bytes(&self) -> u64;
 
-    /// Writes the keys that stand before the energy account.
+    /// Writes the keys before the energy account.
     ///
     /// # Errors
     /// Those of the serializer.
@@ -25,7 +25,7 @@ pub trait PhaseExtension {
         Ok(())
     }
 
-    /// Writes the keys that stand after the energy account.
+    /// Writes the keys after the energy account.
     ///
     /// # Errors
     /// Those of the serializer.
@@ -37,7 +37,7 @@ pub trait PhaseExtension {
 pub struct PhaseReport<E> {
     /// Why it ended.
     pub stop: StopReason,
-    /// Time it covered.
+    /// Time it covered, in the battery's unit.
     pub time: f64,
     /// Accepted steps.
     pub n_steps: u64,
@@ -51,7 +51,7 @@ pub struct PhaseReport<E> {
     pub ledger_residual: f64,
     /// Processor seconds of the calling thread, those before a checkpoint included.
     pub cpu_seconds: f64,
-    /// What only this battery has.
+    /// What only this battery reports.
     pub own: E,
 }
 

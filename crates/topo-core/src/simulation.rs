@@ -16,7 +16,7 @@ pub type StopCondition<'a, S> = dyn FnMut(&Sample<'_, S>) -> Option<String> + 'a
 
 /// A model, its state and the method that advances it.
 ///
-/// Every run ends: by its time, its condition, an interrupt, the shortest step or the limit of trial steps.
+/// Every run ends: at its time, by its condition, by an interrupt, at the shortest step or at the limit of trial steps.
 ///
 /// # Validation
 /// `decays_as_it_should`, `every_way_to_stop`
@@ -82,15 +82,16 @@ impl<M: Model, S: Stepper<M>> Simulation<M, S> {
         }
     }
 
-    /// The same simulation, which stops between two steps when `interrupt` asks.
+    /// The same simulation, which stops between two steps when `interrupt` requests it.
     pub fn with_interrupt(mut self, interrupt: Interrupt) -> Self {
         self.interrupt = interrupt;
         self
     }
 
-    /// Runs until `until`, `stop` or trouble; each observer sees the state whenever its schedule is due, also at the start.
+    /// Runs until the time `until`, until `stop` returns a reason, or until no step is accepted any more. Each observer sees
+    /// the state whenever its schedule is due, also at the start.
     ///
-    /// The last step ends at `until` to the bit. `stop` is asked at the start and after every accepted step.
+    /// The last step ends at `until` to the bit. `stop` is called at the start and after every accepted step.
     pub fn run(
         &mut self,
         until: f64,
@@ -108,7 +109,7 @@ impl<M: Model, S: Stepper<M>> Simulation<M, S> {
     /// One turn of [`run`](Self::run): shows the present state, and makes an accepted step unless the run is over; gives the reason
     /// then. What is [remembered](Self::memory) between two turns leads to the same steps.
     ///
-    /// Trial steps are counted on since the start or the last [change](Self::modify).
+    /// Trial steps are counted since the start or the last [change](Self::modify).
     pub fn advance(
         &mut self,
         until: f64,
@@ -186,7 +187,7 @@ impl<M: Model, S: Stepper<M>> Simulation<M, S> {
         self.steps.control_mut()
     }
 
-    /// Time reached.
+    /// Time reached, in the model's unit.
     pub fn time(&self) -> f64 {
         self.steps.time()
     }
@@ -206,7 +207,7 @@ impl<M: Model, S: Stepper<M>> Simulation<M, S> {
         self.stepper.counters()
     }
 
-    /// Gives model and state away.
+    /// Returns model and state.
     pub fn into_parts(self) -> (M, M::State) {
         (self.model, self.state)
     }

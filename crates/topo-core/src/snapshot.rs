@@ -1,4 +1,4 @@
-//! Snapshots: vertices and quantities along them as a table that any program reads.
+//! Snapshots: vertices and quantities along them as a table that any program can read.
 
 use std::fmt::{Display, Write as _};
 use std::path::Path;
@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 
 use crate::file::{FileError, write_atomic_bytes};
 
-/// Vertices with named columns of one number a vertex.
+/// Vertices with named columns of one number per vertex.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Snapshot {
     vertices: Vec<Vector3<f64>>,
@@ -62,7 +62,7 @@ impl Snapshot {
     /// The text that [`write`](Self::write) writes; `path` names it in messages.
     ///
     /// # Errors
-    /// As [`write`](Self::write), but for those of the file system.
+    /// As [`write`](Self::write), except those of the file system.
     pub fn text(&self, path: &Path) -> Result<String, FileError> {
         let unwritable = |what: String| {
             Err(FileError::Unwritable {
@@ -130,7 +130,7 @@ impl Snapshot {
     /// Reads such a table from a text; `path` names it in messages.
     ///
     /// # Errors
-    /// As [`read`](Self::read), but for those of the file system.
+    /// As [`read`](Self::read), except those of the file system.
     pub fn parse(path: &Path, text: &str) -> Result<Self, FileError> {
         let flaw = |line: usize, column: usize, what: &dyn Display| FileError::Table {
             path: path.to_owned(),

@@ -1,4 +1,4 @@
-//! The loop of trial steps that both batteries run: try, judge, accept or refuse, shorten, land on a wanted time.
+//! The loop of trial steps that both batteries run: try, judge, accept or refuse, shorten, end at a requested time.
 
 use serde::{Deserialize, Serialize};
 
@@ -11,7 +11,7 @@ use crate::stop::StopReason;
 /// [`Simulation`](crate::Simulation) is one, for a [`Model`](crate::Model) of numbers in flat vectors and any
 /// [`Stepper`](crate::Stepper). A system that fuses its rate with the stages of its integrator implements it on its own.
 pub trait Advance {
-    /// Longest step from the present state that is worth a trial; asked once before each accepted step.
+    /// Longest step from the present state that is worth a trial. Called once before each accepted step.
     ///
     /// # Errors
     /// A [`Rejection`] that ends the run, since no shorter step helps.
@@ -22,20 +22,20 @@ pub trait Advance {
         in_halves(dt, target - time)
     }
 
-    /// Tries a step of length `dt` from `time` and asks all guards; gives the local error, which `control` finds good enough.
+    /// Tries a step of length `dt` from `time` and checks all guards. Returns the local error, which `control` has accepted.
     ///
     /// # Errors
     /// Why the step is refused: by the integrator, by [`StepControl::judge`], or by a guard.
     fn try_step(&mut self, time: f64, dt: f64, control: &StepControl) -> Result<f64, Rejection>;
 
-    /// Makes the last trial, of length `dt`, the state, and keeps the books.
+    /// Makes the last trial, of length `dt`, the state, and updates the energy account.
     fn accept(&mut self, dt: f64);
 
     /// Power of the step length with which the error estimate of one step vanishes.
     fn error_order(&self) -> u32;
 }
 
-/// The length `dt`, or less so that two equal steps end what is left, rather than a long one and a sliver.
+/// The length `dt`, or less: near the end two equal steps are made rather than a long and a very short one.
 fn in_halves(dt: f64, remaining: f64) -> f64 {
     if dt >= remaining * (1.0 - 1e-9) {
         remaining
@@ -76,8 +76,8 @@ impl TimeStepping {
     /// A step that reaches `target` ends there to the bit. Refused steps are counted and followed by shorter ones.
     ///
     /// # Errors
-    /// The reason to stop, the state being the one before: the limit of trial steps, a step below the shortest one, or a failure
-    /// that no shorter step avoids.
+    /// The reason to stop, with the state before the step: the limit of trial steps, a step below the shortest one, or a
+    /// failure that no shorter step avoids.
     pub fn step_towards(
         &mut self,
         target: f64,
@@ -115,7 +115,7 @@ impl TimeStepping {
         }
     }
 
-    /// Counts a refused step of length `dt`; gives the length of the next one.
+    /// Counts a refused step of length `dt`; returns the length of the next one.
     fn refuse(&mut self, dt: f64, why: Rejection, error_order: u32) -> Result<f64, StopReason> {
         self.rejections.add(&why);
         if matches!(why, Rejection::Fatal { .. }) {
@@ -126,7 +126,8 @@ impl TimeStepping {
             .ok_or(StopReason::StepTooSmall { dt, last: why })
     }
 
-    /// What keeps it, read from a file, from being a run that began with `control` and is followed until `until`.
+    /// Why this cannot be a run that began with `control` and is followed until `until`; `None` if it can. For one read from a
+    /// file.
     pub fn flaw(&self, control: &StepControl, until: f64) -> Option<&'static str> {
         let refused = self.rejections.iter().map(|(_, n)| n);
         let mut counts = refused.chain([self.n_steps, self.n_trials]);
@@ -141,12 +142,12 @@ impl TimeStepping {
         }
     }
 
-    /// Starts to count trial steps anew, as for a new limit of them.
+    /// Resets the count of trial steps.
     pub fn restart_trials(&mut self) {
         self.n_trials = 0;
     }
 
-    /// Time reached.
+    /// Time reached, in the model's unit.
     pub fn time(&self) -> f64 {
         self.time
     }
@@ -161,7 +162,7 @@ impl TimeStepping {
         self.n_steps
     }
 
-    /// Trial steps, accepted or not, since they were last counted anew.
+    /// Trial steps, accepted or not, since the count was last reset.
     pub fn n_trials(&self) -> u64 {
         self.n_trials
     }

@@ -1,4 +1,4 @@
-//! Why a run ends, and how to ask it to.
+//! Why a run ends, and how to stop it.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -56,28 +56,28 @@ impl StopReason {
         }
     }
 
-    /// Whether the run ended as asked: at its time or by its condition.
+    /// Whether the run ended as requested: at its time or by its condition.
     pub fn is_success(&self) -> bool {
         matches!(self, Self::ReachedTime | Self::Condition(_))
     }
 }
 
-/// A token by which another thread (or a signal handler) asks runs to stop after their present step.
+/// A token by which another thread or a signal handler stops runs after their present step.
 #[derive(Clone, Debug, Default)]
 pub struct Interrupt(Arc<AtomicBool>);
 
 impl Interrupt {
-    /// A token that nobody has used yet.
+    /// A token without a request to stop.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Asks all holders of this token to stop.
+    /// Requests all holders of this token to stop.
     pub fn request(&self) {
         self.0.store(true, Ordering::Relaxed);
     }
 
-    /// Whether someone asked.
+    /// Whether a stop was requested.
     pub fn is_requested(&self) -> bool {
         self.0.load(Ordering::Relaxed)
     }

@@ -11,15 +11,15 @@ use crate::check::{InvalidValue, positive};
 pub struct RodMaterial {
     /// Bending (Young's) modulus E_b, in pascals.
     pub bending_modulus: f64,
-    /// Internal viscosity eta, in pascal seconds.
+    /// Internal viscosity η, in pascal seconds.
     pub viscosity: f64,
-    /// Twisting over bending modulus, alpha.
+    /// Twisting over bending modulus, α: no unit.
     pub twist_ratio: f64,
-    /// Stretching over bending modulus, gamma; below its true value, to soften what hardly stretches anyway.
+    /// Stretching over bending modulus, γ: no unit. Chosen below its true value, as a fibre hardly stretches anyway.
     pub stretch_ratio: f64,
 }
 
-/// Silicone: E_b = 10 MPa, eta = 10 kPa s, alpha = 1/1.3, gamma = 5.
+/// Silicone: E_b = 10 MPa, η = 10 kPa s, α = 1/1.3, γ = 5.
 pub const SILICONE: RodMaterial = RodMaterial {
     bending_modulus: 1e7,
     viscosity: 1e4,
@@ -27,9 +27,9 @@ pub const SILICONE: RodMaterial = RodMaterial {
     stretch_ratio: 5.0,
 };
 
-/// The reduced units of a rod: its radius h, its bending modulus E_b and its viscosity eta are 1.
+/// The reduced units of a rod: its radius h, its bending modulus E_b and its viscosity η are 1.
 ///
-/// Times are then in eta/E_b. Energies inside the code are divided by the cross section A = pi h^2, thus in E_b h.
+/// Times are then in η/E_b. Energies inside the code are divided by the cross section A = π h^2, so they are in E_b h.
 ///
 /// # Validation
 /// `silicone_fibre_in_si_units`, `there_and_back_again`
@@ -82,58 +82,59 @@ impl RodUnits {
         Self::new(radius, material.bending_modulus, material.viscosity)
     }
 
-    /// Seconds in a reduced time: eta/E_b each.
+    /// A reduced `time` (in η/E_b) in seconds.
     pub fn time_to_seconds(&self, time: f64) -> f64 {
         time * (self.viscosity / self.bending_modulus)
     }
 
-    /// Reduced time in seconds.
+    /// `seconds` as a reduced time (in η/E_b).
     pub fn seconds_to_time(&self, seconds: f64) -> f64 {
         seconds / self.time_to_seconds(1.0)
     }
 
-    /// Metres in a reduced length: h each.
+    /// A reduced `length` (in h) in metres.
     pub fn length_to_metres(&self, length: f64) -> f64 {
         length * self.radius
     }
 
-    /// Reduced length in metres.
+    /// `metres` as a reduced length (in h).
     pub fn metres_to_length(&self, metres: f64) -> f64 {
         metres / self.radius
     }
 
-    /// Joules in a reduced energy *per cross section*: pi E_b h^3 each.
+    /// A reduced `energy` per cross section (in E_b h) in joules: it counts π E_b h^3.
     pub fn energy_to_joules(&self, energy: f64) -> f64 {
         energy * (PI * self.bending_modulus * self.radius.powi(3))
     }
 
-    /// Reduced energy per cross section in joules.
+    /// `joules` as a reduced energy per cross section (in E_b h).
     pub fn joules_to_energy(&self, joules: f64) -> f64 {
         joules / self.energy_to_joules(1.0)
     }
 }
 
-/// T0 = 2 L eta/(h E_b) of a rod of reduced `length` L: the unit in which times are reported.
+/// T_0 = 2 L η/(h E_b) of a rod of reduced `length` L: the unit in which times are reported.
 pub fn reference_time(length: f64) -> f64 {
     2.0 * length
 }
 
-/// T_b = 2 L^2 eta/(pi^2 h^2 E_b): the time in which the bending energy of a nearly straight free rod falls by a factor e.
+/// T_b = 2 L^2 η/(π^2 h^2 E_b): the time in which the bending energy of a nearly straight free rod falls by a factor e.
 pub fn bending_time(length: f64) -> f64 {
     2.0 * length * length / (PI * PI)
 }
 
-/// T_tw = eta/(alpha E_b): the time in which twist relaxes.
+/// T_tw = η/(α E_b): the time in which twist relaxes.
 pub fn twist_time(twist_ratio: f64) -> f64 {
     1.0 / twist_ratio
 }
 
-/// E0 = E_b h^2 L of a rod of reduced `length` L, per cross section: the unit in which energies are reported.
+/// E_0 = E_b h^2 L of a rod of reduced `length` L, per cross section: the unit in which energies are reported.
 pub fn reference_energy(length: f64) -> f64 {
     length / PI
 }
 
-/// An `energy` per cross section in units of E0 = E_b h^2 L, as energies are reported.
+/// An `energy` e per cross section (in E_b h) of a rod of reduced `length` L, in units of E_0 = E_b h² L, as energies are
+/// reported.
 ///
 /// ```math
 /// E / E_0 = e A / L, \quad A = \pi

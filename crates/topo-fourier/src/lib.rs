@@ -1,7 +1,13 @@
 //! Fourier transforms of planes and lines: the one file that names rustfft and realfft.
 //!
-//! A crate of its own, because all transforms are generic and compiled where they are first used with doubles: here, beside
-//! what needs them and not again with each change of it.
+//! ```math
+//! X_k = \sum_{j=0}^{n-1} x_j\, e^{-2\pi i\, jk/n}, \qquad n\, x_j = \sum_{k=0}^{n-1} X_k\, e^{2\pi i\, jk/n}
+//! ```
+//!
+//! Neither direction is normalised: forward and back multiplies by the number of points.
+//!
+//! The libraries are generic and compile their transforms in the crate that first uses them with doubles. This crate is separate so that
+//! they are compiled once, and not again whenever the solvers change.
 
 use std::sync::Arc;
 
@@ -63,7 +69,7 @@ impl PlaneFft {
         self.n_x / 2 + 1
     }
 
-    /// Room for one thread.
+    /// Working memory for one thread.
     pub fn scratch(&self) -> PlaneScratch {
         let n_fft = [
             self.forward_x.get_scratch_len(),
@@ -80,8 +86,8 @@ impl PlaneFft {
         }
     }
 
-    /// Transforms a plane: `fill(j, row)` writes row j and says whether it did (else the row is zero);
-    /// `emit(column, transform)` hands its destination of n_y modes to `transform`.
+    /// Transforms a plane: `fill(j, row)` writes row j and returns whether it did (else the row counts as zero); `emit(column,
+    /// transform)` passes its destination of n_y modes to `transform`.
     pub fn forward(
         &self,
         s: &mut PlaneScratch,
@@ -108,8 +114,8 @@ impl PlaneFft {
         }
     }
 
-    /// Transforms a plane back: `take(column, transform)` hands the n_y modes of a column, which are destroyed, to `transform`;
-    /// `keep(j)` says whether row j is wanted, and `emit(j, row)` gets it.
+    /// Transforms a plane back: `take(column, transform)` passes the n_y modes of a column, which are overwritten, to
+    /// `transform`; `keep(j)` returns whether row j is needed, and `emit(j, row)` receives it.
     pub fn inverse(
         &self,
         s: &mut PlaneScratch,
@@ -162,7 +168,7 @@ impl LineFft {
         }
     }
 
-    /// Room for one thread.
+    /// Working memory for one thread.
     pub fn scratch(&self) -> Vec<Complex64> {
         let n = self
             .forward

@@ -1,4 +1,4 @@
-//! The closed braid of a word, embedded as a curve that a unit tube can follow.
+//! The closure of a braid word as a curve along which a tube of radius 1 does not touch itself.
 
 use std::f64::consts::{PI, TAU};
 
@@ -14,13 +14,13 @@ const COLUMN_ARC: f64 = 5.3;
 const LIFT: f64 = 1.3;
 /// Vertices per unit of length.
 const PER_UNIT: f64 = 3.0;
-/// Largest generator served: a word of this size already needs thousands of vertices.
+/// Largest generator accepted: a word of this size already needs thousands of vertices.
 const LARGEST_GENERATOR: i32 = 64;
 
 /// The letters of a braid word written as integers with blanks, commas or brackets between them, such as `1 -2 1 -2`.
 ///
 /// # Errors
-/// [`KnotError::Letter`] naming what is no integer.
+/// [`KnotError::Letter`] with the text that is not an integer.
 ///
 /// # Validation
 /// `words_are_read_from_text`.

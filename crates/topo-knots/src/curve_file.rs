@@ -1,8 +1,8 @@
 //! Curves from and to files: comma-separated values, XYZ, and Geomview's VECT, the format of Ridgerunner and KnotPlot.
 //!
-//! Reading order: `text` (bytes to lines), `cells` (lines to numbers), `columns` and `rows` (which of them are coordinates), `table` (rows to components and
-//! frames), `xyz` (headers, counts and titles), `vect`, and `write`. Nothing of a file is dropped unsaid: what is no coordinate is told in
-//! [`CurveFile::notes`] or refused.
+//! Reading order: `text` (bytes to lines), `cells` (lines to numbers), `columns` and `rows` (which of them are coordinates),
+//! `table` (rows to components and frames), `xyz` (headers, counts and titles), `vect`, and `write`. Nothing in a file is
+//! dropped silently: what is not a coordinate is listed in [`CurveFile::notes`] or refused.
 
 mod cells;
 mod columns;
@@ -33,18 +33,20 @@ pub use write::{curve_text, write_curve};
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum CurveFormat {
-    /// A header with the columns `x`, `y`, `z`, also after a `#`, then a vertex a line between commas or semicolons. Further columns may tell the
-    /// component (`component`, `line`, `chain`), the frame (`frame`, `time`, `cut`) and whether it is `closed`.
+    /// A header with the columns `x`, `y`, `z`, also after a `#`, then one vertex per line, with commas or semicolons between
+    /// the numbers. Further columns may give the component (`component`, `line`, `chain`), the frame (`frame`, `time`, `cut`)
+    /// and whether the curve is `closed`.
     Csv,
-    /// Three numbers a line; a blank line, `NaN NaN NaN` or `X` starts another component, `#` a comment. A header is read as in `Csv`. The molecular
-    /// form (a count, a title, then an element with its three numbers a line, and again for each frame) is read too.
+    /// Three numbers per line; a blank line, `NaN NaN NaN` or `X` starts another component, `#` a comment. A header is read as
+    /// in `Csv`. The molecular form (a count, a title, then per line an element with its three numbers, and again for each
+    /// frame) is read too.
     Xyz,
     /// Geomview's VECT: components with their numbers of vertices, negative for closed ones.
     Vect,
 }
 
 impl CurveFormat {
-    /// The format that the extension of a file's name stands for: `csv` or `tsv`, `xyz`, `txt` or `dat`, `vect` or `vec`.
+    /// The format of the extension of a file name: `csv` or `tsv`, `xyz`, `txt` or `dat`, `vect` or `vec`.
     ///
     /// # Errors
     /// [`KnotError::CurveFile`] for another extension.
@@ -106,15 +108,15 @@ pub struct CurveFile {
     pub components: Vec<CurveComponent>,
     /// Which frame that is, if there are several.
     pub frame: Option<CurveFrame>,
-    /// What a reader should know: how columns without names, another encoding and the ends were taken.
+    /// Notes for the reader: how columns without names, another encoding and the ends were interpreted.
     pub notes: Vec<String>,
 }
 
 impl CurveFile {
-    /// Reads a file, in `format` or in that which its extension stands for; `-` is the standard input.
+    /// Reads a file, in `format` or in the format of its extension; `-` is the standard input.
     ///
     /// # Errors
-    /// [`KnotError::Io`], [`KnotError::CurveFile`] naming line and remedy.
+    /// [`KnotError::Io`], or [`KnotError::CurveFile`] with line and remedy.
     ///
     /// # Validation
     /// `files_as_people_have_them`, `what_does_not_add_up_is_refused_with_its_line`.
@@ -136,7 +138,7 @@ impl CurveFile {
     /// Reads the content of a file; `path` names it in messages.
     ///
     /// # Errors
-    /// As [`read`](Self::read), but for those of the file system.
+    /// As [`read`](Self::read), except those of the file system.
     pub fn parse(
         path: &Path,
         bytes: &[u8],
@@ -219,7 +221,7 @@ fn closed_by_repetition(mut component: CurveComponent) -> CurveComponent {
     component
 }
 
-/// Reads all components of a file of one frame, in the format that its extension stands for.
+/// Reads all components of a file of one frame, in the format of its extension.
 ///
 /// # Errors
 /// As [`CurveFile::read`], and [`KnotError::CurveFile`] for a file of several frames.
@@ -251,7 +253,7 @@ pub(crate) fn only(
 /// The components in the content of a file of one frame; `path` names it in messages.
 ///
 /// # Errors
-/// As [`read_components`], but for those of the file system.
+/// As [`read_components`], except those of the file system.
 pub fn parse_components(
     path: &Path,
     bytes: impl AsRef<[u8]>,

@@ -1,4 +1,4 @@
-//! What can go wrong with knots, each case naming the culprit and the remedy.
+//! What can go wrong with knots; each case names the cause and the remedy.
 
 use std::path::PathBuf;
 
@@ -13,12 +13,12 @@ pub enum KnotError {
     /// No knot of that name is in the table.
     #[error("no knot `{name}` in the table; {}add one with a file `{name}.toml` in a knot folder", near_names(.near))]
     UnknownKnot {
-        /// The name that was asked for.
+        /// The requested name.
         name: String,
         /// Names in the table that resemble it.
         near: Vec<String>,
     },
-    /// A sum that is not in the table, with a factor that has no braid word to put beside the others.
+    /// A sum that is not in the table, with a factor that has no braid word.
     #[error(
         "`{name}` is not in the table, and cannot be made from its factors as `{factor}` has no braid word; add `braid` to the file of `{factor}`, or a file `{name}.toml` with a curve"
     )]
@@ -47,12 +47,12 @@ pub enum KnotError {
         /// Position of the letter, from 0.
         position: usize,
     },
-    /// A letter of the braid word is beyond the number of strands that the embedding serves.
+    /// A letter of the braid word is beyond the largest one that the embedding accepts.
     #[error("generator {generator} of the braid word is beyond the largest served, {largest}")]
     GeneratorTooLarge {
         /// The letter.
         generator: i32,
-        /// The largest letter served.
+        /// The largest letter accepted.
         largest: i32,
     },
     /// A strand between the first and the last is touched by no generator, so the closure falls apart.
@@ -168,7 +168,7 @@ pub enum KnotError {
         /// What would be right.
         expected: &'static str,
     },
-    /// None of the starts led to a tight shape.
+    /// No start led to a tight shape.
     #[error("{knot}: none of the {n_starts} starts could be tightened; last reason: {last}")]
     NotTightened {
         /// The knot.

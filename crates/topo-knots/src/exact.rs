@@ -4,13 +4,15 @@
 //! overflows or underflows.
 //!
 //! # References
-//! `shewchuk1997`
+//! [shewchuk1997]
+//!
+//! [shewchuk1997]: https://doi.org/10.1007/PL00009321
 
 use robust::{Coord, Coord3D};
 
 use crate::V;
 
-/// Relative error of a volume of 3 x 3 products when it is computed as it stands, in units of the sum of the sizes of its terms.
+/// Relative error of a volume of 3 x 3 products when it is computed directly, in units of the sum of the sizes of its terms.
 pub(crate) const VOLUME_ERROR: f64 = 8.0 * f64::EPSILON;
 
 /// A number with the sign of (b - a) x (d - c) . (c - a), six times the volume of the tetrahedron: 0 if the points lie in a plane.

@@ -1,4 +1,4 @@
-//! Tight shapes of the table's knots, computed once and kept in a folder under the hash of what they depend on.
+//! Tight shapes of the table's knots, computed once and kept in a folder, under a hash of what they depend on.
 
 use std::path::{Path, PathBuf};
 
@@ -12,7 +12,7 @@ pub const METHOD_VERSION: u32 = 1;
 /// Name and version of the type in the files.
 const SCHEMA: &str = "tight-knot/1";
 
-/// The tight shape of a knot: from the folder `cache` if it is there and sound, else computed and kept there.
+/// The tight shape of a knot: from the folder `cache` if a valid file is there, else computed and kept there.
 ///
 /// The file's name holds a hash of the entry, the settings and the version of the method. A file that cannot be read, is
 /// truncated or corrupt is computed again and replaced. A mirror image is made from the file of the knot itself.
@@ -30,7 +30,7 @@ pub fn ideal(
     ideal_until(entry, settings, cache, &Interrupt::new())
 }
 
-/// As [`ideal`], but ended early when `interrupt` asks: nothing is kept in the folder then.
+/// As [`ideal`], but ended early when `interrupt` requests it; nothing is then kept in the folder.
 ///
 /// # Errors
 /// As [`ideal`], and [`KnotError::Interrupted`] with the best curve so far.

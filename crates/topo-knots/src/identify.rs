@@ -1,4 +1,4 @@
-//! Which knot of the table a closed or an open curve is.
+//! The knot type of a closed or an open curve.
 
 mod entry;
 mod kind;
@@ -27,8 +27,8 @@ const N_SHUFFLES: usize = 300;
 
 /// The knot type of the closed polygon through `vertices`.
 ///
-/// Vertices are removed while the triangle with their neighbours is free; what is left is projected and simplified,
-/// and its invariants are looked up among the knots known and the sums of two or three of them.
+/// Vertices are removed while the triangle with their neighbours is free; what is left is projected and simplified, and its
+/// invariants are looked up among the known knots and the sums of two or three of them.
 ///
 /// # Errors
 /// [`KnotError::TooFewVertices`], [`KnotError::NotFinite`], [`KnotError::Degenerate`] for a curve that runs through itself, and
@@ -38,7 +38,9 @@ const N_SHUFFLES: usize = 300;
 /// `names_the_table_and_its_mirrors`, `a_curve_passed_through_itself_is_caught`, `composite_knots_multiply`.
 ///
 /// # References
-/// `koniaris1991`
+/// [koniaris1991]
+///
+/// [koniaris1991]: https://doi.org/10.1063/1.460889
 pub fn identify(vertices: &[V], table: &KnotTable) -> Result<KnotType, KnotError> {
     let vertices = usable_vertices(vertices, true)?;
     let mut reducer = Reducer::default();
@@ -46,7 +48,7 @@ pub fn identify(vertices: &[V], table: &KnotTable) -> Result<KnotType, KnotError
     classify(&mut reducer, table, Care::Handed)
 }
 
-/// How far to go in telling knots apart.
+/// How far to go in distinguishing knots.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Care {
     /// The Jones polynomial only where several names, or a knot and its mirror image, fit without it.

@@ -59,7 +59,10 @@ impl Invariants {
     /// general position or the two routes disagree, as they do when the curve runs through itself.
     ///
     /// # References
-    /// `alexander1928`, `gordon1978`
+    /// [alexander1928], [gordon1978]
+    ///
+    /// [alexander1928]: https://doi.org/10.1090/S0002-9947-1928-1501429-1
+    /// [gordon1978]: https://doi.org/10.1007/BF01609479
     pub fn of(vertices: &[V]) -> Result<Self, KnotError> {
         Self::of_diagram(&diagram(vertices)?)
     }
@@ -67,8 +70,8 @@ impl Invariants {
     /// Invariants of a diagram.
     ///
     /// # Errors
-    /// [`KnotError::TooComplicated`] beyond the crossings served, [`KnotError::Degenerate`] if polynomial and Goeritz matrix
-    /// contradict each other.
+    /// [`KnotError::TooComplicated`] for more crossings than accepted, [`KnotError::Degenerate`] if polynomial and Goeritz
+    /// matrix contradict each other.
     pub(crate) fn of_diagram(diagram: &Diagram) -> Result<Self, KnotError> {
         let n_crossings = diagram.n_crossings();
         // Beyond this, the determinant of the Goeritz matrix may lose its last digit.

@@ -15,16 +15,16 @@ const MOST_COMPARED: usize = 12;
 /// A longer curve has strands too thin for its vertices, and would take long to tighten.
 const LONGEST: f64 = 500.0;
 
-/// Inverts a closed curve in a sphere around a random point between its strands; `None` if no point gives a curve of fair
-/// thickness.
+/// Inverts a closed curve in a sphere around a random point between its strands; `None` if no point gives a curve that is thick
+/// enough.
 ///
 /// ```math
 /// x \mapsto S \frac{x - p}{|x - p|^2}, \qquad S = \mathrm{diag}(1, 1, -1)
 /// ```
 ///
-/// The reflection undoes the change of handedness. The Möbius energy of a curve at rest stays as it is, but another part of
-/// the knot becomes its outside: the point lies in a face of the diagram, which becomes the outer one. Tightening keeps that face
-/// outside, so that each face may lead to a basin of its own.
+/// The reflection undoes the change of handedness. The inversion keeps the Möbius energy of a curve, but another part of the
+/// knot becomes its outside: the point lies in a face of the diagram, which becomes the outer one. Tightening keeps that face
+/// outside, so that each face may lead to another basin.
 ///
 /// # Errors
 /// [`KnotError::Curve`] if a curve cannot be resampled.

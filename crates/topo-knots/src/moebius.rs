@@ -17,8 +17,8 @@ const RESAMPLE_EVERY: usize = 4;
 /// E = \iint \left( \frac{1}{|x(s) - x(s')|^2} - \frac{1}{D(s, s')^2} \right) ds\, ds'
 /// ```
 ///
-/// The gradient is preconditioned by the fractional Laplacian of order 3, the strength of the energy's own second
-/// variation. No vertex moves by more than 0.6 of the thickness, so no strands can cross.
+/// D is the distance along the curve. The gradient is preconditioned by the fractional Laplacian of order 3, the order of the
+/// second variation of the energy. No vertex moves by more than 0.6 of the thickness, so no strands can cross.
 ///
 /// # Errors
 /// [`KnotError::Curve`] if the curve cannot be resampled.

@@ -1,4 +1,4 @@
-//! Names of knots and of their sums: factors joined by `#`, each with a leading `m` of its own where it is a mirror image.
+//! Names of knots and of their sums: factors joined by `#`, each with a leading `m` where it is a mirror image.
 
 use std::cmp::Ordering;
 use std::fmt;
@@ -11,7 +11,9 @@ pub(crate) const UNKNOT: &str = "0_1";
 /// The prime knots of at most ten crossings that equal their mirror image.
 ///
 /// # References
-/// `livingston2026`
+/// [livingston2026]
+///
+/// [livingston2026]: https://knotinfo.org
 pub(crate) const AMPHICHIRAL: [&str; 20] = [
     "4_1", "6_3", "8_3", "8_9", "8_12", "8_17", "8_18", "10_17", "10_33", "10_37", "10_43",
     "10_45", "10_79", "10_81", "10_88", "10_99", "10_109", "10_115", "10_118", "10_123",
@@ -66,8 +68,8 @@ impl Ord for Factor {
 
 /// Name of a knot or of a sum of knots, such as `m3_1#5_2`: the left-handed trefoil and 5_2 of the table.
 ///
-/// Each factor has its own `m`; factors stand in the order of the table, and one that equals its mirror image bears no `m`. So every
-/// type has one name, and that of the mirror image of `3_1#4_1` is `m3_1#4_1`.
+/// Each factor has its own `m`; factors are in the order of the table, and one that equals its mirror image has no `m`. So
+/// every type has one name, and that of the mirror image of `3_1#4_1` is `m3_1#4_1`.
 ///
 /// # Validation
 /// `sums_have_one_name_each`
@@ -83,7 +85,7 @@ impl KnotName {
         Self::parse_with(text, &is_amphichiral)
     }
 
-    /// The same with another knowledge of what equals its mirror image.
+    /// The same, with a function that says which knots equal their mirror image.
     pub(crate) fn parse_with(text: &str, is_amphichiral: &dyn Fn(&str) -> bool) -> Self {
         let factor = |text: &str| {
             let (knot, mirrored) = match text.strip_prefix('m') {
@@ -127,7 +129,7 @@ impl KnotName {
         self.mirror_with(&is_amphichiral)
     }
 
-    /// The same with another knowledge of what equals its mirror image.
+    /// The same, with a function that says which knots equal their mirror image.
     #[must_use]
     pub(crate) fn mirror_with(&self, is_amphichiral: &dyn Fn(&str) -> bool) -> Self {
         let turned = |factor: &Factor| Factor {
@@ -137,7 +139,7 @@ impl KnotName {
         Self::of(self.factors.iter().map(turned).collect())
     }
 
-    /// The name, or that of the mirror image, whichever stands first.
+    /// The name, or that of the mirror image, whichever comes first.
     #[must_use]
     pub fn unsided(&self) -> Self {
         self.clone().min(self.mirror())
@@ -166,8 +168,8 @@ impl From<KnotName> for String {
     }
 }
 
-/// Name of the mirror image of a shape: a knot gains or loses its leading `m`, also one of which the mirror image is the same knot
-/// turned around, as `m4_1`; a sum follows [`KnotName`], as `m3_1#4_1` for `3_1#4_1`.
+/// Name of the mirror image of a shape. A knot gains or loses its leading `m`, even where the mirror image is the same knot
+/// turned around (`m4_1`). A sum follows [`KnotName`]: `m3_1#4_1` for `3_1#4_1`.
 pub fn mirror_name(name: &str) -> String {
     if name.contains('#') {
         return KnotName::parse(name).mirror().to_string();
@@ -213,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn mirrored_shapes_are_told_by_their_name() {
+    fn mirrored_shapes_are_known_by_their_name() {
         for name in ["m3_1", "m4_1", "m3_1#4_1", "4_1#m5_1", "3_1#m3_1#m3_1"] {
             assert!(is_mirror_image(name), "{name}");
             assert!(!is_mirror_image(&mirror_name(name)), "{name}");

@@ -36,7 +36,10 @@ const REMOVED: u32 = u32::MAX;
 /// Reduces chains by the moves of Koniaris and Muthukumar; keeps its buffers between calls.
 ///
 /// # References
-/// `koniaris1991`, `reidemeister1927`
+/// [koniaris1991], [reidemeister1927]
+///
+/// [koniaris1991]: https://doi.org/10.1063/1.460889
+/// [reidemeister1927]: https://doi.org/10.1007/BF02952507
 #[derive(Debug, Default)]
 pub(crate) struct Reducer {
     /// The chain; after a reduction, what is left of it.

@@ -1,4 +1,4 @@
-//! The knot table: one TOML file a knot, the built-in ones embedded, others from a folder.
+//! The knot table: one TOML file per knot, the built-in ones embedded, others from a folder.
 
 use std::borrow::Cow;
 use std::collections::{BTreeMap, HashSet};
@@ -18,7 +18,7 @@ mod file;
 pub use chirality::Chirality;
 pub use entry::KnotEntry;
 
-/// How the label of a knot begins that has no name.
+/// Beginning of the label of a knot without a name.
 pub(crate) const UNKNOWN: &str = "unknown(";
 
 static BUILTIN: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/knots");
@@ -43,7 +43,7 @@ pub struct KnotTable {
     derived: OnceLock<Derived>,
 }
 
-/// What follows from the entries, found when it is first asked for.
+/// What follows from the entries, found when it is first needed.
 #[derive(Debug, Clone)]
 struct Derived {
     /// The prime knots known without a file.
@@ -176,7 +176,7 @@ impl KnotTable {
     /// from its factors.
     ///
     /// # Errors
-    /// [`KnotError::UnknownKnot`] with the names that come near, [`KnotError::SumWithoutWord`] for a sum that cannot be made.
+    /// [`KnotError::UnknownKnot`] with similar names, [`KnotError::SumWithoutWord`] for a sum that cannot be made.
     ///
     /// # Validation
     /// `any_sum_and_any_prime_to_ten_crossings_is_found`

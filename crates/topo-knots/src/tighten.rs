@@ -63,7 +63,7 @@ pub struct TightKnot {
     pub length_over_radius: f64,
     /// What was checked on the curve itself.
     pub certificate: Certificate,
-    /// Processor seconds that it took.
+    /// Processor time that it took, in seconds.
     pub cpu_seconds: f64,
     /// Matrix factorisations that it took.
     pub n_factorisations: usize,
@@ -98,11 +98,11 @@ impl TightKnot {
     }
 }
 
-/// Tightens a knot of the table from the starts that serve it: its curve or closed braid, plain and rounded, the closures of
-/// its other words and of random words of the same braid, and inversions of the best of these if the settings ask for them.
+/// Tightens a knot of the table from several starts: its curve or closed braid, plain and rounded, the closures of its other
+/// words and of random words of the same braid, and inversions of the best of these if the settings include them.
 ///
-/// A mirror image is the mirror image of the tightened knot, to the bit: the search is random, and would find another shape.
-/// The tight unknot is the circle, and nothing is searched for.
+/// A mirror image is the mirror image of the tightened knot, to the bit: the search is random and would otherwise find another
+/// shape. The tight unknot is the circle, and nothing is searched for.
 ///
 /// # Errors
 /// As [`tighten`], and [`KnotError::Mismatch`] if a start contradicts the invariants of the entry.
@@ -116,7 +116,7 @@ pub fn tighten_entry(
     tighten_entry_until(entry, settings, &Interrupt::new())
 }
 
-/// As [`tighten_entry`], but ended early when `interrupt` asks.
+/// As [`tighten_entry`], but ended early when `interrupt` requests it.
 ///
 /// # Errors
 /// As [`tighten_entry`], and [`KnotError::Interrupted`] with the best curve so far.
@@ -199,7 +199,7 @@ pub fn tighten_by_hops(
     tighten_by_hops_until(entry, n_hops, settings, &Interrupt::new())
 }
 
-/// As [`tighten_by_hops`], but ended early when `interrupt` asks.
+/// As [`tighten_by_hops`], but ended early when `interrupt` requests it.
 ///
 /// # Errors
 /// As [`tighten_by_hops`], and [`KnotError::Interrupted`] with the best curve so far.
@@ -282,7 +282,10 @@ fn inversions(
 /// the curve before it is returned as not converged.
 ///
 /// # References
-/// `ashton2011`, `rawdon2003`
+/// [ashton2011], [rawdon2003]
+///
+/// [ashton2011]: https://doi.org/10.1080/10586458.2011.544581
+/// [rawdon2003]: https://eudml.org/doc/51725
 pub fn tighten(
     name: &str,
     starts: &[Polyline],

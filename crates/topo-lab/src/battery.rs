@@ -9,8 +9,9 @@ use std::path::Path;
 
 use crate::LabError;
 use crate::cost::Probe;
+use crate::scene::{Keys, SceneFault};
 
-pub use known::{parse_scene, read_scene};
+pub use known::{parse_scene, read_scene, scene_faults};
 pub use options::Options;
 pub(crate) use options::refused;
 pub use scene::Scene;
@@ -47,4 +48,20 @@ pub trait Battery: Sync {
     /// # Errors
     /// File, line, key and what would be right.
     fn parse(&self, text: &str, path: &Path) -> Result<Box<dyn Scene>, LabError>;
+
+    /// The keys of its scenes; nothing where they are not described.
+    fn keys(&self) -> Option<&'static Keys> {
+        None
+    }
+
+    /// Keys with the values that a scene to begin with has, as they are written.
+    fn first_scene(&self) -> &'static [(&'static str, &'static str)] {
+        &[]
+    }
+
+    /// All that is wrong with the text of a scene file, as far as it can be seen without a run.
+    fn faults(&self, text: &str, path: &Path) -> Vec<SceneFault> {
+        let refused = self.parse(text, path).err();
+        refused.map(|e| e.into_fault(path)).into_iter().collect()
+    }
 }

@@ -35,6 +35,8 @@ pub use choices::{Cuts, NEAR_TIE, Names};
 pub use frames::{ShapeFrame, discharge_frames};
 pub use identity::RESULTS_VERSION;
 pub use imperfection::perturbed;
+#[cfg(test)]
+pub(crate) use keys::ROD_KEYS;
 pub use observable::Observable;
 pub use own_term::OwnTerm;
 pub(crate) use probe::ROD_PROBE;

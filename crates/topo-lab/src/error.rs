@@ -3,6 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use thiserror::Error;
+use topo_knots::KnotError;
+
+use crate::scene::{Document, SceneFault, read_text};
 
 /// A scene, a case or a table cannot be made as asked; the message says what, where, and what would be right.
 #[derive(Debug, Error)]
@@ -16,28 +19,9 @@ pub enum LabError {
         /// Why.
         source: std::io::Error,
     },
-    /// A scene is not valid TOML or has an unknown key or a value of the wrong type.
-    #[error("{path} is not a scene:\n{message}")]
-    Scene {
-        /// The file, or a name for a text.
-        path: PathBuf,
-        /// Line, key and what was expected.
-        message: String,
-    },
-    /// A value of a scene is out of range.
-    #[error("{}: {key} = {value} is not possible: {remedy}", place(.path, *.line))]
-    SceneValue {
-        /// The file.
-        path: PathBuf,
-        /// Line of the key, or of the table that it would stand in.
-        line: Option<usize>,
-        /// Key with its table.
-        key: String,
-        /// What was written.
-        value: String,
-        /// What would be right.
-        remedy: String,
-    },
+    /// A scene is no TOML, has an unknown key or a value that cannot be.
+    #[error("{0}")]
+    Scene(Box<SceneFault>),
     /// The name of a scene's file names no folder for its results.
     #[error("{}: {reason}: rename the file, its results go to a folder of its name", .path.display())]
     SceneName {
@@ -143,7 +127,37 @@ pub enum LabError {
     },
 }
 
+impl From<SceneFault> for LabError {
+    fn from(fault: SceneFault) -> Self {
+        Self::Scene(Box::new(fault))
+    }
+}
+
 impl LabError {
+    /// The error as a fault of a scene's file.
+    pub fn into_fault(self, path: &Path) -> SceneFault {
+        match self {
+            Self::Scene(fault) => *fault,
+            other => SceneFault::of_file(path, "the scene", other.to_string()),
+        }
+    }
+
+    /// The error with its place in a scene's file, if it is about a knot that the file names.
+    pub fn in_file(self, path: &Path) -> Self {
+        let Self::Knot(KnotError::UnknownKnot { name, .. }) = &self else {
+            return self;
+        };
+        let Ok(text) = read_text(path) else {
+            return self;
+        };
+        match Document::new(&text, path) {
+            Ok(document) if document.has("rod.knot") => {
+                document.wrong("rod.knot", format!("\"{name}\""), self.to_string())
+            }
+            _ => self,
+        }
+    }
+
     /// Whether a case is refused for what it is, so that others can go on.
     pub(crate) fn is_of_one_case(&self) -> bool {
         match self {
@@ -173,12 +187,5 @@ impl LabError {
             } => Some(error),
             _ => None,
         }
-    }
-}
-
-fn place(path: &Path, line: Option<usize>) -> String {
-    match line {
-        Some(line) => format!("{}, line {line}", path.display()),
-        None => path.display().to_string(),
     }
 }

@@ -82,7 +82,7 @@ struct Versions {
 pub struct Outcome<T> {
     /// Its rows of the table.
     pub rows: Vec<T>,
-    /// Why it did not come to its end.
+    /// Why it did not finish.
     #[serde(default)]
     pub failure: Option<String>,
 }

@@ -19,9 +19,11 @@ pub use holds::{CheckRow, Cover, check_estimates, factor_of_estimates};
 pub use record::{Factor, Measured, Record, Stamp, table_hash};
 pub use table::points;
 
+use std::borrow::Cow;
 use std::fmt;
 use std::marker::PhantomData;
 
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{self, MapAccess, Visitor, value::MapAccessDeserializer};
 use serde::{Deserialize, Deserializer, Serialize};
 
@@ -129,6 +131,18 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for GoalOr<T> {
             }
         }
         deserializer.deserialize_any(Either(PhantomData))
+    }
+}
+
+impl<T: JsonSchema> JsonSchema for GoalOr<T> {
+    fn schema_name() -> Cow<'static, str> {
+        format!("GoalOr{}", T::schema_name()).into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let error = json_schema!({ "type": "number", "exclusiveMinimum": 0, "maximum": 1 });
+        let settings = generator.subschema_for::<T>();
+        json_schema!({ "x-table": true, "anyOf": [error, settings], "examples": [0.02] })
     }
 }
 

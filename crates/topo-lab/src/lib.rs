@@ -25,7 +25,9 @@ mod system;
 mod terms;
 mod tradeoff;
 
-pub use battery::{Battery, Checked, Options, Scene, Stage, Sweep, Swept, parse_scene, read_scene};
+pub use battery::{
+    Battery, Checked, Options, Scene, Stage, Sweep, Swept, parse_scene, read_scene, scene_faults,
+};
 pub use cost::{Cost, Estimate, Probe};
 pub use elastic::{
     ACCURACY_CASES, AccuracyRow, Cuts, Elastic, ElasticCase, ElasticReport, ElasticScene, NEAR_TIE,
@@ -46,7 +48,7 @@ pub use nematic::{
 };
 pub use preset::Preset;
 pub use progress::{Event, Shard, SweepSettings, with_jobs};
-pub use scene::{Axis, AxisValue, Document, Numbers, folder_of, numbers};
+pub use scene::{Axis, AxisValue, Document, KeyRow, Keys, Numbers, SceneFault, folder_of, numbers};
 pub use stability::{Ending, StabilityRow, n_extremes, stability};
 pub use sweep::{About, CaseFolder, CaseName, Experiment, FailedCase, Place, Row, SweepReport};
 pub use system::System;

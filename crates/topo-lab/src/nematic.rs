@@ -25,6 +25,8 @@ pub use case::NematicCase;
 pub use field::FieldSnapshot;
 pub use frames::{NematicFrame, nematic_frames};
 pub use identity::RESULTS_VERSION as NEMATIC_RESULTS_VERSION;
+#[cfg(test)]
+pub(crate) use keys::COLLOID_KEYS;
 pub use onset::{BucklingCase, BucklingRow, buckling_cases, buckling_study};
 #[cfg(test)]
 pub(crate) use probe::COLLOID_PROBE;

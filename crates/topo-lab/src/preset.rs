@@ -1,9 +1,10 @@
 //! How much is computed: one dial for scenes, figures, tight shapes, maps and trade-offs.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// How fine and how accurate.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Preset {
     /// Minutes for all: N = 200, tolerance 1e-3 h.

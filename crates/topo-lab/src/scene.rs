@@ -3,17 +3,29 @@
 mod axis;
 mod beside;
 mod document;
+mod fault;
 mod folder;
+mod forms;
+mod keys;
 mod numbers;
+mod rows;
+mod syntax;
+mod words;
 
 pub(crate) use axis::{Access, SweptKey, axes, check_count, product, put_axes, remove};
 pub use axis::{Axis, AxisValue};
 pub(crate) use beside::BesideQ;
 pub use document::Document;
 pub(crate) use document::read_text;
+pub use fault::SceneFault;
 pub use folder::folder_of;
+pub(crate) use forms::nearest;
+pub use keys::Keys;
+pub(crate) use keys::numbers as numbers_node;
 pub use numbers::{Numbers, numbers};
 pub(crate) use numbers::{repeated, repeated_number};
+pub use rows::KeyRow;
+pub(crate) use words::listed;
 
 /// The dotted keys of all numbers and lists of numbers in a file.
 #[cfg(test)]

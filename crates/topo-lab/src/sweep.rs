@@ -32,7 +32,7 @@ pub use row::Row;
 pub struct SweepReport<R> {
     /// Rows of the table, cases in the order of the scene.
     pub rows: Vec<R>,
-    /// Cases without a result, or whose run did not come to its end.
+    /// Cases without a result, or whose run did not finish.
     pub failed: Vec<FailedCase>,
     /// Cases computed now.
     pub n_computed: usize,

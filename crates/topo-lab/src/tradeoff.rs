@@ -214,7 +214,7 @@ mod tests {
     }
 
     #[test]
-    fn finished_runs_are_kept_and_others_told() {
+    fn finished_runs_are_kept_and_others_named() {
         let trial = |value: &str| Trial {
             case: "a".to_owned(),
             setting: "resolution",
@@ -229,7 +229,7 @@ mod tests {
             }),
         };
         let known = [run("a", "coarse", 7.0, 1.0)];
-        let n_told = std::sync::atomic::AtomicUsize::new(0);
+        let n_reported = std::sync::atomic::AtomicUsize::new(0);
         let interrupt = Interrupt::new();
         let work = TradeoffWork {
             out: std::path::Path::new("."),
@@ -240,7 +240,7 @@ mod tests {
                 5
             },
             report: &|_| {
-                n_told.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+                n_reported.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
             },
         };
         let trials = [trial("coarse"), trial("fine")];
@@ -249,6 +249,6 @@ mod tests {
         assert_eq!(runs[1].peak_bytes, 5);
         interrupt.request();
         assert_eq!(run_all(&trials, &work).unwrap().len(), 1);
-        assert_eq!(n_told.into_inner(), 3);
+        assert_eq!(n_reported.into_inner(), 3);
     }
 }

@@ -1,5 +1,6 @@
 //! Anchoring: which tensor a surface prefers, and how strongly.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use topo_core::{InvalidValue, finite, non_negative};
 
@@ -15,15 +16,15 @@ const LARGEST_CHARGE: i32 = 10_000;
 /// F_s = \tfrac{W}{2} \int |Q - Q_s|^2\, dA
 /// ```
 ///
-/// Strong anchoring is the limit of large W, a free surface that of W = 0.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+/// Q_s is the tensor that the surface prefers. Strong anchoring is the limit of large W, a free surface that of W = 0.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Anchoring {
     /// Q = Q_s on the surface.
     #[default]
     Strong,
-    /// With the strength W, in L/xi_N.
-    Weak(f64),
+    /// With the strength W, in L/ξ_N.
+    Weak(#[schemars(range(min = 0), extend("x-unit" = "L/ξ_N"), example = 1.0)] f64),
     /// No preference.
     Free,
 }
@@ -54,15 +55,18 @@ impl Anchoring {
     }
 }
 
-/// Directors on a grid of polar angles (rows, from 0 to pi) and azimuths (columns, periodic), the azimuth running faster.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// Directors on a grid of polar angles (rows, from 0 to π) and azimuths (columns, periodic), the azimuth running faster.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DirectorTable {
-    /// Polar angles, at least 2: 0 and pi are the first and the last.
+    /// Polar angles, at least 2: 0 and π are the first and the last.
+    #[schemars(range(min = 2), extend("x-unit" = "1"), example = 2)]
     pub n_polar: usize,
     /// Azimuths, at least 1: the first is 0.
+    #[schemars(range(min = 1), extend("x-unit" = "1"), example = 1)]
     pub n_azimuth: usize,
-    /// n_polar times n_azimuth directors; their lengths and signs do not matter.
+    /// n_polar times n_azimuth directors; any length but zero, either sign.
+    #[schemars(extend("x-unit" = "1", "examples" = [[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]]))]
     pub directors: Vec<[f64; 3]>,
 }
 
@@ -108,22 +112,35 @@ impl DirectorTable {
 }
 
 /// The director that a particle's surface prefers.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+///
+/// ```math
+/// n_q = (\sin\theta \cos q\varphi,\ \sin\theta \sin q\varphi,\ \cos\theta), \qquad
+/// n_{\text{homeotropic}} = \nu, \qquad n_{\text{planar}} = \frac{a - (a \cdot \nu)\, \nu}{|a - (a \cdot \nu)\, \nu|}
+/// ```
+///
+/// θ and φ are the polar angle and the azimuth of the point of the sphere, ν is the normal there, a the axis.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum SurfacePattern {
     /// n_q = (sin θ cos qφ, sin θ sin qφ, cos θ), of effective charge q.
-    Winding(i32),
+    #[serde(rename = "charge")]
+    Winding(
+        #[schemars(range(min = -LARGEST_CHARGE, max = LARGEST_CHARGE), extend("x-unit" = "turns"), example = 2)]
+         i32,
+    ),
     /// Along the surface normal.
     Homeotropic,
     /// Tangential, along the projection of an axis.
     Planar {
         /// The axis.
+        #[schemars(extend("x-unit" = "1", "examples" = [[0.0, 0.0, 1.0]]))]
         axis: [f64; 3],
     },
     /// The same director everywhere.
     Uniform {
         /// The director.
+        #[schemars(extend("x-unit" = "1", "examples" = [[1.0, 0.0, 0.0]]))]
         director: [f64; 3],
     },
     /// Given on a grid of angles.
@@ -157,7 +174,7 @@ impl SurfacePattern {
         Ok(())
     }
 
-    /// Turns of the pattern along the equator.
+    /// Number of turns of the pattern along the equator.
     pub fn charge(&self) -> Option<i32> {
         match self {
             Self::Winding(q) => Some(*q),
@@ -203,7 +220,7 @@ impl SurfacePattern {
 }
 
 /// The director that a plate prefers.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum PlateDirector {
@@ -211,18 +228,20 @@ pub enum PlateDirector {
     #[default]
     Perpendicular,
     /// In the plane of the plate, at this angle (radians) from its first axis.
-    Planar(f64),
+    Planar(#[schemars(extend("x-unit" = "rad"), example = 0.5)] f64),
     /// The direction given.
-    Along([f64; 3]),
+    Along(#[schemars(extend("x-unit" = "1", "examples" = [[0.0, 1.0, 1.0]]))] [f64; 3]),
 }
 
 /// A plate: what it prefers and how strongly.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Plate {
     /// Preferred director.
+    #[schemars(example = PlateDirector::Planar(0.5))]
     pub director: PlateDirector,
-    /// Strength.
+    /// Strength of the anchoring.
+    #[schemars(example = Anchoring::Weak(1.0))]
     pub anchoring: Anchoring,
 }
 
@@ -261,7 +280,7 @@ impl Plate {
     }
 }
 
-/// Passes a vector that has a direction.
+/// Returns a vector if it has a direction.
 pub(crate) fn unit(name: &str, v: [f64; 3]) -> Result<[f64; 3], NematicError> {
     for x in v {
         finite(name, x)?;

@@ -35,7 +35,7 @@ impl NematicBattery {
     /// A battery of these parameters.
     ///
     /// # Errors
-    /// A parameter out of range, a particle that does not fit, a grid that needs more memory than allowed.
+    /// A parameter out of range, a particle that does not fit, or a grid that needs more memory than allowed.
     pub fn new(
         parameters: &NematicParameters,
         accuracy: &NematicAccuracy,
@@ -71,7 +71,7 @@ impl NematicBattery {
     /// `axis` is 0, 1, 2 for x, y, z; `upper` says which of its two faces.
     ///
     /// # Errors
-    /// [`NematicError::PeriodicFace`] when the face is none, [`NematicError::NotFinite`] when a value is not finite.
+    /// [`NematicError::PeriodicFace`] when the face is periodic, [`NematicError::NotFinite`] when a value is not finite.
     pub fn with_face(
         mut self,
         axis: usize,
@@ -115,7 +115,7 @@ impl NematicBattery {
         &self.parameters
     }
 
-    /// Accuracy asked for.
+    /// The accuracy settings.
     pub fn accuracy(&self) -> &NematicAccuracy {
         &self.accuracy
     }
@@ -130,7 +130,7 @@ impl NematicBattery {
         self.particle.as_ref()
     }
 
-    /// What is unusual about it, though possible.
+    /// What is unusual about it, although valid.
     pub fn warnings(&self) -> &[String] {
         &self.warnings
     }
@@ -140,13 +140,13 @@ impl NematicBattery {
         estimate(&self.grid, self.accuracy.precision)
     }
 
-    /// Diffusion time R²/(Gamma L), in tau_N.
+    /// Diffusion time R²/(Γ L), in τ_N.
     pub fn diffusion_time(&self) -> f64 {
         let m = &self.parameters.material;
         self.parameters.radius.powi(2) / (m.rotational_mobility * m.elastic_constant)
     }
 
-    /// The state before charging: uniform, along z, tilted by `seed` cos(π z/L_z) towards `azimuth`.
+    /// The state before charging: uniform, along z, tilted by `seed` cos(π z/L_z) towards `azimuth`, both in radians.
     ///
     /// Without a seed the symmetric saddle above the buckling transition is kept to rounding.
     ///

@@ -2,6 +2,7 @@
 
 pub(crate) mod shares;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::anchoring::{Anchoring, SurfacePattern};
@@ -15,7 +16,7 @@ pub(crate) const SHORTEST_LINK: f64 = 0.2;
 const LEAST_VOLUME: f64 = 0.05;
 
 /// How anchoring on the particle is put on the grid.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Boundary {
     /// Links end where they meet the surface, symmetrically, so that the field is the gradient of an energy.
@@ -36,7 +37,7 @@ impl Boundary {
 }
 
 /// How a free particle is put on the grid.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum FreeSurface {
     /// Cells count by the share of their volume, links by the share of their face, outside the sphere.
@@ -84,8 +85,8 @@ pub(crate) struct AnchoredSurface<'a> {
 impl AnchoredSurface<'_> {
     /// What cell (i, j, k) is.
     ///
-    /// A link of whole length h to the surface at distance θ h has conductance 1/θ; its end stands for the area h² |ν_axis|, so
-    /// that all ends together make up the surface.
+    /// A link of whole length h to the surface at distance θ h has conductance 1/θ; its end represents the area h² |ν_axis|, so
+    /// that all ends together cover the surface.
     pub(crate) fn kind(&self, ijk: [usize; 3]) -> Kind {
         let (grid, particle) = (self.grid, self.particle);
         let h = grid.spacing();

@@ -23,14 +23,14 @@ pub enum CrossSection {
 /// A disclination line.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct DefectLine {
-    /// Points along it (xi_N), continued through periodic faces rather than cut there.
+    /// Points along it (ξ_N), continued through periodic faces rather than cut there.
     pub points: Vec<[f64; 3]>,
     /// Whether the last point is joined to the first.
     pub closed: bool,
     /// Cosine of the angle between the axis about which the director turns and the tangent, at each point: 1, -1, 0 for the three
     /// cross-sections.
     pub cosine: Vec<f64>,
-    /// Length (xi_N).
+    /// Length (ξ_N).
     pub length: f64,
 }
 
@@ -53,9 +53,10 @@ type Square = (usize, usize);
 
 /// Defect lines of a state, longest first.
 ///
-/// A line pierces a square of cells when the director, followed around it, comes back reversed. A cube of cells has an even number
-/// of such squares, so lines end only at walls and at the particle. Points are moved to the centre of low order nearby. The
-/// cross-section follows from the tensor whose trace is the cosine between the axis of rotation and the tangent:
+/// A line pierces a square of cells when the director, followed around it, comes back reversed. A cube of cells has an even
+/// number of such squares, so lines end only at walls and at the particle. Points are moved to the centre of low order nearby.
+/// The cross-section follows from a tensor: its trace over its norm is the cosine of the angle β between the axis of rotation
+/// and the tangent.
 ///
 /// ```math
 /// D_{\gamma i} = \varepsilon_{\gamma\mu\nu}\, \varepsilon_{i l k}\, \partial_l Q_{\mu\alpha}\, \partial_k Q_{\nu\alpha}, \qquad \cos\beta = \operatorname{tr} D/|D|
@@ -65,7 +66,9 @@ type Square = (usize, usize);
 /// `straight_lines_have_their_cross_sections`
 ///
 /// # References
-/// `schimming2022`
+/// [schimming2022]
+///
+/// [schimming2022]: https://doi.org/10.1039/D1SM01584B
 pub fn defect_lines(state: &NematicState) -> Vec<DefectLine> {
     let tracer = Tracer::new(state);
     let mut squares = tracer.pierced_squares();

@@ -1,4 +1,4 @@
-//! The domain of one run: which cells are regular, which have cut links or faces, and what lies beyond the walls.
+//! The domain of one run: which cells are regular, which have cut links or faces, and what is beyond the walls.
 
 use crate::tensor::{Tensor5, contract};
 use crate::{Faces, Grid};

@@ -10,16 +10,16 @@ use crate::real::Real;
 use crate::tensor::{Tensor5, contract};
 use crate::vector::dispatch;
 
-/// Free energy by part, in L xi_N; the bulk part counts from the uniform equilibrium.
+/// Free energy by part, all in L ξ_N; the bulk part counts from the uniform equilibrium.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct EnergyParts {
-    /// Of distortion, L/2 (∂Q)² and the second elastic term.
+    /// Distortion: L/2 (∂Q)² and the second elastic term.
     pub elastic: f64,
-    /// Of order, the terms in A, B and C.
+    /// Order: the terms in A, B and C.
     pub bulk: f64,
-    /// Of weak anchoring.
+    /// Weak anchoring.
     pub surface: f64,
-    /// Of the external field.
+    /// External field.
     pub field: f64,
 }
 
@@ -42,10 +42,11 @@ impl<T: Real> Kernel<T> {
     /// Free energy of `q`.
     ///
     /// ```math
-    /// F = h^3 \sum_{cells} \varphi\, f(Q) + \frac{L h}{2} \sum_{links} w\, |Q_a - Q_b|^2
+    /// F = h^3 \sum_{\text{cells}} \varphi\, f(Q) + \frac{L h}{2} \sum_{\text{links}} w\, |Q_a - Q_b|^2
     /// ```
     ///
-    /// Links count half with each of their cells; sums are made plane by plane, so that threads do not matter.
+    /// φ is the fluid share of a cell and w the weight of a link. Links count half with each of their two cells; sums are made
+    /// plane by plane, so that the result does not depend on the number of threads.
     pub(crate) fn energy(&self, q: &[T]) -> EnergyParts {
         let nz = self.domain.grid.cells()[2];
         let plane = |k: usize| dispatch!(self.level(), simd => self.plane_energy(simd, k, q));

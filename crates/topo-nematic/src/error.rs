@@ -5,14 +5,14 @@ use topo_core::{FileError, InvalidValue};
 
 use crate::GridError;
 
-/// A nematic, its grid, its particle or its protocol cannot be made as asked.
+/// A nematic, its grid, its particle or its protocol is invalid.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum NematicError {
     /// A number is out of its range.
     #[error(transparent)]
     Value(#[from] InvalidValue),
-    /// The grid cannot be.
+    /// The grid is invalid.
     #[error(transparent)]
     Grid(#[from] GridError),
     /// There is no positive order at which the bulk energy is stationary.
@@ -20,11 +20,11 @@ pub enum NematicError {
         "A = {a}, B = {b}, C = {c} have no nematic phase (B^2 < 24 A C, or no positive order): change them, or give the surface order"
     )]
     NoNematicPhase {
-        /// A.
+        /// A, in L/ξ_N².
         a: f64,
-        /// B.
+        /// B, in L/ξ_N².
         b: f64,
-        /// C.
+        /// C, in L/ξ_N².
         c: f64,
     },
     /// The particle leaves no room to a wall or to its image.
@@ -34,11 +34,11 @@ pub enum NematicError {
     ParticleTooLarge {
         /// 0, 1, 2 for x, y, z.
         axis: usize,
-        /// Its radius.
+        /// Its radius, in ξ_N.
         radius: f64,
-        /// Length of the box along the axis.
+        /// Length of the box along the axis, in ξ_N.
         extent: f64,
-        /// What is left.
+        /// What is left, in ξ_N.
         gap: f64,
     },
     /// The particle is smaller than the grid can show.
@@ -46,9 +46,9 @@ pub enum NematicError {
         "a particle of radius {radius} is not resolved by a spacing of {spacing}: the radius must be at least two spacings"
     )]
     ParticleTooCoarse {
-        /// Its radius.
+        /// Its radius, in ξ_N.
         radius: f64,
-        /// The spacing.
+        /// The spacing, in ξ_N.
         spacing: f64,
     },
     /// The spacing does not resolve the core of a defect.
@@ -56,11 +56,11 @@ pub enum NematicError {
         "a spacing of {spacing} is too coarse for defect cores of size {correlation_length}: use at most {limit}"
     )]
     SpacingTooCoarse {
-        /// The spacing.
+        /// The spacing, in ξ_N.
         spacing: f64,
-        /// Correlation length of the material.
+        /// Correlation length of the material, in the unit of the spacing.
         correlation_length: f64,
-        /// The largest spacing accepted.
+        /// The largest spacing accepted, in the same unit.
         limit: f64,
     },
     /// The run would need more memory than allowed.
@@ -70,9 +70,9 @@ pub enum NematicError {
     TooMuchMemory {
         /// Cells along each axis.
         cells: [usize; 3],
-        /// Estimate for the run.
+        /// Estimate for the run, in bytes.
         needed: u64,
-        /// What is allowed.
+        /// What is allowed, in bytes.
         limit: u64,
     },
     /// Tables or fields of the wrong length.
@@ -88,7 +88,7 @@ pub enum NematicError {
     /// The operation needs a particle, and there is none.
     #[error("{operation} needs a particle: give one, or leave it out")]
     NoParticle {
-        /// What was asked.
+        /// The operation.
         operation: &'static str,
     },
     /// A field holds NaN or infinity.
@@ -99,13 +99,13 @@ pub enum NematicError {
         /// Index of the cell.
         cell: usize,
     },
-    /// Values were given for a face that is none.
+    /// Values were given for a periodic face.
     #[error("axis {axis} is periodic and has no outer faces: use walls at the sides")]
     PeriodicFace {
         /// 0, 1, 2 for x, y, z.
         axis: usize,
     },
-    /// The relaxation left all bounds.
+    /// The relaxation diverged.
     #[error(
         "the field is no longer finite after {step} steps: use a smaller spacing or less extreme constants"
     )]

@@ -1,9 +1,9 @@
-//! The grid: cells, spacing, and what lies beyond each pair of outer faces.
+//! The grid: cells, spacing, and what is beyond each pair of outer faces.
 
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-/// What lies beyond a pair of opposite outer faces.
+/// What is beyond a pair of opposite outer faces.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Faces {
@@ -38,7 +38,7 @@ impl TryFrom<Unchecked> for Grid {
     }
 }
 
-/// Why a grid cannot be.
+/// Why a grid is invalid.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum GridError {
@@ -50,10 +50,10 @@ pub enum GridError {
         /// Cells along it.
         cells: usize,
     },
-    /// Not a length.
+    /// The spacing is not a length.
     #[error("the grid spacing must be positive and finite, but is {spacing}")]
     Spacing {
-        /// The value given.
+        /// The value given, in ξ_N.
         spacing: f64,
     },
     /// More cells than can be counted or held.
@@ -70,7 +70,7 @@ pub enum GridError {
 const MAX_CELLS: usize = 1 << 31;
 
 impl Grid {
-    /// A box of `cells` cubes of edge `spacing` (xi_N), with `faces` beyond its outer faces along x, y, z.
+    /// A box of `cells` cubes of edge `spacing` (ξ_N), with `faces` beyond its outer faces along x, y, z.
     ///
     /// # Errors
     /// [`GridError`] for fewer than 4 cells along an axis, more than 2^31 in all, or a spacing that is no length.
@@ -110,17 +110,17 @@ impl Grid {
         self.cells.iter().product()
     }
 
-    /// Edge h of a cell (xi_N).
+    /// Edge h of a cell (ξ_N).
     pub fn spacing(&self) -> f64 {
         self.spacing
     }
 
-    /// What lies beyond the faces along x, y, z.
+    /// What is beyond the outer faces along x, y, z.
     pub fn faces(&self) -> [Faces; 3] {
         self.faces
     }
 
-    /// Edges of the box (xi_N).
+    /// Edges of the box (ξ_N).
     pub fn extent(&self) -> [f64; 3] {
         self.cells.map(|n| n as f64 * self.spacing)
     }
@@ -130,7 +130,7 @@ impl Grid {
         (k * self.cells[1] + j) * self.cells[0] + i
     }
 
-    /// Centre of cell (i, j, k) (xi_N).
+    /// Centre of cell (i, j, k) (ξ_N).
     pub fn centre(&self, ijk: [usize; 3]) -> [f64; 3] {
         ijk.map(|i| (i as f64 + 0.5) * self.spacing)
     }

@@ -17,12 +17,12 @@ use crate::vector::dispatch;
 /// The Hessian of the energy at a state: minus the derivative of the molecular field.
 ///
 /// ```math
-/// A P = -\frac{dH}{dQ} P = -L \nabla^2 P + A P + B\,(QP + PQ)_{tr} + C\,[2 (Q:P)\, Q + (Q:Q)\, P]
+/// A P = -\frac{dH}{dQ} P = -L \nabla^2 P + A P + B\,(QP + PQ)_{\mathrm{tr}} + C\,[2 (Q:P)\, Q + (Q:Q)\, P]
 /// ```
 ///
 /// It is symmetric in the inner product of the gradient flow, the sum over cells of mass times P:P'. A small change along an
-/// eigenvector decays at Gamma times its eigenvalue, whose unit is L/xi_N². The derivative is exact, not a difference of fields: the
-/// elastic part is linear and the bulk part a cubic, so that one pass does where differences need two.
+/// eigenvector decays at Γ times its eigenvalue, whose unit is L/ξ_N². The derivative is exact, not a difference of
+/// fields: the elastic part is linear and the bulk part a cubic, so one pass is enough where differences need two.
 ///
 /// # Validation
 /// `hessian_is_the_derivative_of_the_molecular_field`
@@ -133,7 +133,7 @@ impl<'a> Hessian<'a> {
     }
 }
 
-/// What one number and eight of them side by side can do.
+/// Operations on one number, or on eight side by side.
 trait Field:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Mul<f64, Output = Self>
 {

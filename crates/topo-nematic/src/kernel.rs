@@ -13,10 +13,10 @@ use crate::real::{Lanes, Real};
 /// Widest vector, in numbers.
 const WIDEST: usize = 16;
 
-/// Coefficients of the molecular field of a cell whose six links are whole.
+/// Coefficients of the molecular field of a cell with six whole links to its neighbours Q_n; E is the field term.
 ///
 /// ```math
-/// H = \frac{L}{h^2} \sum_{6} (Q_n - Q) - A Q - B\,(Q^2)_{tr} - C\,(Q:Q)\,Q + E
+/// H = \frac{L}{h^2} \sum_{6} (Q_n - Q) - A Q - B\,(Q^2)_{\mathrm{tr}} - C\,(Q:Q)\,Q + E
 /// ```
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Coefficients<T> {
@@ -76,7 +76,7 @@ pub(crate) trait Update<L: Lanes> {
     );
 }
 
-/// One value a component; closures passed here must be inlined, or they are compiled for the least processor.
+/// One value a component; closures passed here must be inlined, or they are compiled for the baseline instruction set.
 #[inline(always)]
 pub(crate) fn five<L>(f: impl Fn(usize) -> L) -> [L; 5] {
     [f(0), f(1), f(2), f(3), f(4)]

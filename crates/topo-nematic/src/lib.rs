@@ -1,11 +1,11 @@
 //! Charged nematic colloids: patterned anchoring, a defect ring, its release, its flow.
 //!
-//! Reading order: [`NematicParameters`] (what a scene names) → [`NematicState`] (the tensor field) → [`NematicBattery`] (the protocol:
-//! charge, switch, discharge) → [`record`] (what it leaves). What is measured on a field: [`order`], [`defects`], [`ring`], [`surface`];
-//! what it is made of: [`tensor`], [`anchoring`]; the fluid: [`flow`] on top of [`stokes`].
+//! Reading order: [`NematicParameters`] (what a scene names) → [`NematicState`] (the tensor field) → [`NematicBattery`] (the
+//! protocol: charge, switch, discharge) → [`record`] (what it returns). What is measured on a field: [`order`], [`defects`],
+//! [`ring`], [`surface`]; what it is made of: [`tensor`], [`anchoring`]; the fluid: [`flow`] on top of [`stokes`].
 //!
-//! Units are reduced: lengths in the nematic correlation length xi_N, energies in L xi_N, times in tau_N.
-//! Settings and results have public fields; what keeps an invariant has methods.
+//! Units are reduced: lengths in the nematic correlation length ξ_N, energies in L ξ_N, times in τ_N. Settings and results
+//! have public fields; types with an invariant have methods.
 
 pub mod anchoring;
 mod battery;

@@ -1,5 +1,6 @@
 //! The nematic material: bulk and elastic constants, mobility, flow alignment, viscosity.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use topo_core::{InvalidValue, finite, positive};
 
@@ -13,32 +14,45 @@ use crate::tensor::{Tensor5, contract, square_traceless};
 ///   + \tfrac{L}{2} (\partial_k Q_{ij})^2 + \tfrac{L_2}{2} (\partial_j Q_{ij})^2
 /// ```
 ///
-/// The defaults are those of `patil2020discharging`; its viscosity is 1.38/Gamma, the printed unit being inverted.
+/// The defaults are those of [patil2020discharging]; its viscosity is 1.38/Γ, since the printed unit is inverted. Q is the
+/// order tensor.
 ///
 /// # References
-/// `patil2020discharging`, `beris1994`
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+/// [patil2020discharging], [beris1994]
+///
+/// [patil2020discharging]: https://doi.org/10.1103/PhysRevResearch.2.043196
+/// [beris1994]: https://doi.org/10.1093/oso/9780195076943.001.0001
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Material {
-    /// A, in L/xi_N².
+    /// A, in L/ξ_N².
+    #[schemars(extend("x-unit" = "L/ξ_N²"), example = -0.1)]
     pub a: f64,
-    /// B, in L/xi_N².
+    /// B, in L/ξ_N².
+    #[schemars(extend("x-unit" = "L/ξ_N²"), example = -2.0)]
     pub b: f64,
-    /// C, in L/xi_N².
+    /// C, in L/ξ_N².
+    #[schemars(extend("x-unit" = "L/ξ_N²", "exclusiveMinimum" = 0), example = 2.0)]
     pub c: f64,
     /// Elastic constant L: 1 in reduced units.
+    #[schemars(extend("x-unit" = "L", "exclusiveMinimum" = 0), example = 0.9)]
     pub elastic_constant: f64,
     /// Second elastic constant L_2, in L; leave it out and no term is modelled.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("x-unit" = "L", "x-default" = "not modelled"), example = 0.1)]
     pub second_elastic_constant: Option<f64>,
-    /// Rotational mobility Gamma, of dQ/dt = Gamma H: 1 in reduced units (called the rotational viscosity parameter by `patil2020discharging`).
+    /// Rotational mobility Γ, of dQ/dt = Γ H: 1 in reduced units. In the original paper: "rotational viscosity parameter".
+    #[schemars(extend("x-unit" = "Γ", "exclusiveMinimum" = 0), example = 2.0)]
     pub rotational_mobility: f64,
-    /// Flow alignment chi: no unit.
+    /// Flow alignment χ: no unit.
+    #[schemars(extend("x-unit" = "1"), example = 0.5)]
     pub flow_alignment: f64,
-    /// Isotropic viscosity eta, in 1/Gamma.
+    /// Isotropic viscosity η, in 1/Γ.
+    #[schemars(extend("x-unit" = "1/Γ", "exclusiveMinimum" = 0), example = 1.0)]
     pub viscosity: f64,
-    /// Order S at surfaces and of start fields; the equilibrium order when left out.
+    /// Order S at surfaces and of start fields: no unit; the equilibrium order when left out.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("x-unit" = "1", "x-default" = "the equilibrium order", "exclusiveMinimum" = 0), example = 0.5)]
     pub surface_order: Option<f64>,
 }
 
@@ -59,11 +73,11 @@ impl Default for Material {
 }
 
 impl Material {
-    /// The material, if its constants make sense.
+    /// The material, if its constants are valid.
     ///
     /// # Errors
     /// A constant that is not finite or has the wrong sign; B² < 24 A C without a surface order; an elastic energy that is not
-    /// positive definite (L_2 <= -3 L/5).
+    /// positive definite (L_2 ≤ −3 L/5).
     pub fn checked(self) -> Result<Self, NematicError> {
         finite("material.a", self.a)?;
         finite("material.b", self.b)?;
@@ -102,7 +116,7 @@ impl Material {
     /// Order S_eq of the uniform nematic, if there is a positive one.
     ///
     /// ```math
-    /// S_{eq} = \frac{-B + \sqrt{B^2 - 24 A C}}{6 C}
+    /// S_{\mathrm{eq}} = \frac{-B + \sqrt{B^2 - 24 A C}}{6 C}
     /// ```
     pub fn equilibrium_order(&self) -> Option<f64> {
         let discriminant = self.b * self.b - 24.0 * self.a * self.c;
@@ -118,13 +132,13 @@ impl Material {
             .unwrap_or(0.0)
     }
 
-    /// Bulk energy density of a uniaxial nematic of order `order`.
+    /// Bulk energy density of a uniaxial nematic of order `order`, in L/ξ_N².
     pub fn uniaxial_density(&self, order: f64) -> f64 {
         let s2 = order * order;
         0.75 * self.a * s2 + 0.25 * self.b * s2 * order + 0.5625 * self.c * s2 * s2
     }
 
-    /// Bulk energy density of the uniform equilibrium, which energies are counted from; 0 without a nematic phase.
+    /// Bulk energy density of the uniform equilibrium, from which energies count, in L/ξ_N²; 0 without a nematic phase.
     pub fn reference_density(&self) -> f64 {
         self.equilibrium_order()
             .map_or(0.0, |order| self.uniaxial_density(order))
@@ -135,17 +149,17 @@ impl Material {
         self.reference_density() > 0.0
     }
 
-    /// Bulk energy density of Q above the reference.
+    /// Bulk energy density of Q above the reference, in L/ξ_N².
     pub fn bulk_density(&self, q: &Tensor5) -> f64 {
         let t = contract(q, q);
         let cube = contract(&square_traceless(q), q);
         0.5 * self.a * t + self.b / 3.0 * cube + 0.25 * self.c * t * t - self.reference_density()
     }
 
-    /// Bulk part of the molecular field, -(df/dQ) made traceless.
+    /// Bulk part of the molecular field, −∂f/∂Q made traceless, in L/ξ_N².
     ///
     /// ```math
-    /// H = -A Q - B\,(Q^2)_{tr} - C\,(Q:Q)\,Q
+    /// H = -A Q - B\,(Q^2)_{\mathrm{tr}} - C\,(Q:Q)\,Q
     /// ```
     pub fn bulk_field(&self, q: &Tensor5) -> Tensor5 {
         let square = square_traceless(q);
@@ -153,17 +167,17 @@ impl Material {
         std::array::from_fn(|c| -linear * q[c] - self.b * square[c])
     }
 
-    /// Rate at which a uniform nematic returns to the equilibrium order, over Gamma; also L/xi_N².
+    /// Rate at which a uniform nematic returns to the equilibrium order, over Γ; also L/ξ_N².
     ///
     /// ```math
-    /// A + B S_{eq} + \tfrac92 C S_{eq}^2
+    /// A + B S_{\mathrm{eq}} + \tfrac92 C S_{\mathrm{eq}}^2
     /// ```
     pub fn order_stiffness(&self) -> f64 {
         let s = self.order();
         self.a + self.b * s + 4.5 * self.c * s * s
     }
 
-    /// Nematic correlation length xi_N, in the unit of length; infinite where the order is not stable.
+    /// Nematic correlation length ξ_N, in the unit of length; infinite where the order is not stable.
     pub fn correlation_length(&self) -> f64 {
         let stiffness = self.order_stiffness();
         if stiffness > 0.0 {
@@ -173,7 +187,7 @@ impl Material {
         }
     }
 
-    /// Largest ratio by which the flow that a small tilt drives speeds its decay (bend, or splay where chi is negative).
+    /// Largest ratio by which the flow that a small tilt drives speeds its decay (bend, or splay where χ is negative).
     ///
     /// ```math
     /// \beta = \frac{2 a^2}{\eta\,\Gamma}, \qquad a = \tfrac12 |\chi| \left(\tfrac23 + \tfrac S2\right) + \tfrac34 S
@@ -187,7 +201,7 @@ impl Material {
         2.0 * a * a / (self.viscosity * self.rotational_mobility)
     }
 
-    /// Frank's elastic constant of the director, K = (9/2) L S².
+    /// Frank's elastic constant of the director, K = (9/2) L S², in L.
     pub fn frank_constant(&self) -> f64 {
         4.5 * self.elastic_constant * self.order().powi(2)
     }

@@ -1,4 +1,4 @@
-//! Bytes that a run needs, and bytes that it has.
+//! Bytes that a run needs, and bytes that it holds.
 
 use serde::{Deserialize, Serialize};
 

@@ -57,7 +57,7 @@ pub(crate) fn walls(parameters: &NematicParameters, grid: &Grid, values: &FaceVa
     })
 }
 
-/// The kernel of `grid` with a particle whose surface does what `surface` says.
+/// The kernel of `grid` with a particle whose surface is as `surface` says.
 pub(crate) fn kernel<T: Real>(
     parameters: &NematicParameters,
     grid: &Grid,

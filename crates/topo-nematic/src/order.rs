@@ -8,9 +8,9 @@ use crate::directors::Directors;
 /// Mean horizontal tilt of the director, by two definitions.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct OrderParameter {
-    /// (<Q_xz>, <Q_yz>) 2/(3 S_eq), means over the fluid: the tilt in radians where it is small.
+    /// (⟨Q_xz⟩, ⟨Q_yz⟩) 2/(3 S_eq), means over the fluid: the tilt in radians where it is small.
     pub tilt: [f64; 2],
-    /// (<n_x>, <n_y>), with the sign of n such that n_z > 0.
+    /// (⟨n_x⟩, ⟨n_y⟩), with the sign of n such that n_z > 0.
     pub director: [f64; 2],
 }
 
@@ -20,7 +20,7 @@ impl OrderParameter {
         self.tilt[0].hypot(self.tilt[1])
     }
 
-    /// Azimuth of the tilt, in radians; even charges lock it to the lattice, odd ones keep that of the seed.
+    /// Azimuth of the tilt, in radians; even charges lock it to the lattice, odd charges keep the azimuth of the seed.
     pub fn azimuth(&self) -> f64 {
         self.tilt[1].atan2(self.tilt[0])
     }

@@ -1,5 +1,6 @@
-//! What a scene says of a nematic battery: sizes, surfaces, material, and the accuracy asked for.
+//! The parameters of a nematic battery in a scene: sizes, surfaces, material, and the accuracy.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use topo_core::{InvalidValue, finite, in_range, positive};
 
@@ -15,17 +16,19 @@ use crate::{Faces, Grid, Material, NematicError};
 /// ```math
 /// f = -\tfrac12\, \chi_a\, E_i Q_{ij} E_j
 /// ```
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ExternalField {
-    /// E, in the unit that makes chi_a E² an energy density in L/xi_N².
+    /// E, in the unit that makes χ_a E² an energy density in L/ξ_N².
+    #[schemars(extend("x-unit" = "√(L/ξ_N²)", "examples" = [[0.0, 0.0, 0.1]]))]
     pub vector: [f64; 3],
-    /// Anisotropy chi_a: positive aligns the director with E.
+    /// Anisotropy χ_a: no unit. A positive one aligns the director with E.
+    #[schemars(extend("x-unit" = "1"), example = 1.0)]
     pub anisotropy: f64,
 }
 
 impl ExternalField {
-    /// Molecular field of the external field, -(df/dQ) made traceless.
+    /// Molecular field of the external field, −∂f/∂Q made traceless, in L/ξ_N².
     pub fn molecular_field(&self) -> Tensor5 {
         let square = self.vector.iter().map(|e| e * e).sum::<f64>();
         if square == 0.0 {
@@ -38,8 +41,8 @@ impl ExternalField {
     }
 }
 
-/// What lies at the sides of the cell.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+/// What is at the sides of the cell.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Sides {
     /// The opposite side: a square array of particles.
@@ -50,34 +53,45 @@ pub enum Sides {
 }
 
 /// The battery: a particle between plates, in reduced units.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct NematicParameters {
-    /// Radius R of the particle, in xi_N.
+    /// Radius R of the particle, in ξ_N.
+    #[schemars(extend("x-unit" = "ξ_N", "exclusiveMinimum" = 0), example = 25.0)]
     pub radius: f64,
-    /// Grid spacing h, in xi_N.
+    /// Grid spacing h, in ξ_N.
+    #[schemars(extend("x-unit" = "ξ_N", "exclusiveMinimum" = 0), example = 1.25)]
     pub spacing: f64,
     /// Edges of the cell in radii; each is rounded to an even number of spacings.
+    #[schemars(extend("x-unit" = "R", "examples" = [[6.0, 6.0, 5.0]]))]
     pub cell: [f64; 3],
     /// Numbers of cells, instead of `cell`.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("x-unit" = "1", "x-default" = "those of `cell`", "examples" = [[60, 60, 50]]))]
     pub cells: Option<[usize; 3]>,
     /// Whether there is a particle.
+    #[schemars(example = false)]
     pub particle: bool,
     /// What its surface prefers while charged.
+    #[schemars(example = SurfacePattern::Homeotropic)]
     pub pattern: SurfacePattern,
-    /// How strongly.
+    /// Strength of that anchoring.
+    #[schemars(example = Anchoring::Weak(1.0))]
     pub anchoring: Anchoring,
-    /// How that is put on the grid.
+    /// How the anchored surface is represented on the grid.
+    #[schemars(example = Boundary::NodeMask)]
     pub boundary: Boundary,
     /// The plates below and above.
     pub plates: Plate,
     /// The sides.
+    #[schemars(example = Sides::Walled(Plate::default()))]
     pub sides: Sides,
-    /// No plates: what lies above is what lies below. Only with plates as they are by default, and periodic sides.
+    /// No plates: periodic along z too. Only with default plates and periodic sides.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
+    #[schemars(extend("default" = false), example = true)]
     pub periodic: bool,
     /// The material.
+    #[schemars(extend("x-as" = "material"))]
     pub material: Material,
     /// An external field; leave it out and none is modelled.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -110,7 +124,7 @@ const COARSEST: f64 = 2.5;
 const FINEST_PATTERN: f64 = 8.0;
 
 impl NematicParameters {
-    /// The parameters, if they make sense.
+    /// The parameters, if they are valid.
     ///
     /// # Errors
     /// A value out of range, or a spacing above 2.5 correlation lengths.
@@ -183,7 +197,7 @@ impl NematicParameters {
         Ok(Grid::new(cells, spacing, [sides, sides, plates])?)
     }
 
-    /// What is unusual, though possible.
+    /// What is unusual, although valid.
     pub(crate) fn warnings(&self, grid: &Grid) -> Vec<String> {
         let mut warnings = Vec::new();
         if self.material.is_metastable() {
@@ -222,20 +236,25 @@ impl NematicParameters {
     }
 }
 
-/// How accurately a discharge is followed, and with which means.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+/// Accuracy of a discharge, storage and threads.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct NematicAccuracy {
     /// Local error of a step: root mean square of |dQ|/S over the fluid.
+    #[schemars(range(min = 1e-9, max = 0.1), extend("x-unit" = "1"), example = 1e-5)]
     pub tolerance: f64,
     /// Precision in which the field is stored while it is discharged; it is always charged in double precision.
+    #[schemars(example = Precision::Single)]
     pub precision: Precision,
     /// Threads that share one field.
+    #[schemars(extend("x-as" = "--jobs"))]
     pub threads: Threads,
     /// Limit of trial steps.
+    #[schemars(range(min = 1, max = 1_000_000_000_000_000_u64), extend("x-unit" = "steps"), example = 10_000)]
     pub max_steps: u64,
-    /// Refuse a run whose estimate exceeds this many bytes.
+    /// Largest memory estimate of a run that is accepted, in bytes.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("x-unit" = "bytes", "x-default" = "no other limit"), example = 8_000_000_000_u64)]
     pub memory_limit: Option<u64>,
 }
 
@@ -252,10 +271,10 @@ impl Default for NematicAccuracy {
 }
 
 impl NematicAccuracy {
-    /// The accuracy, if it makes sense.
+    /// The accuracy, if it is valid.
     ///
     /// # Errors
-    /// A tolerance outside 1e-9..0.1, or no steps.
+    /// A tolerance outside 1e-9..0.1, or a limit of 0 steps.
     pub fn checked(self) -> Result<Self, NematicError> {
         in_range("accuracy.tolerance", self.tolerance, 1e-9, 0.1)?;
         in_range("accuracy.max_steps", self.max_steps as f64, 1.0, 1e15)?;

@@ -27,10 +27,10 @@ impl TryFrom<Unchecked> for Particle {
 }
 
 impl Particle {
-    /// A sphere of `radius` (xi_N) about `centre`, in the coordinates of the grid.
+    /// A sphere of `radius` (ξ_N) about `centre`, in the coordinates of the grid.
     ///
     /// # Errors
-    /// A radius that is no length or a centre that is not finite.
+    /// A radius that is not a positive finite number, or a centre that is not finite.
     pub fn new(centre: [f64; 3], radius: f64) -> Result<Self, NematicError> {
         for x in centre {
             finite("particle.centre", x)?;
@@ -51,10 +51,10 @@ impl Particle {
         Ok(particle)
     }
 
-    /// Refuses a sphere that the grid cannot hold or resolve.
+    /// Checks that the grid can hold and resolve the sphere.
     ///
     /// # Errors
-    /// [`NematicError::ParticleTooLarge`] when less than two spacings are left to a wall, or to its periodic image;
+    /// [`NematicError::ParticleTooLarge`] when less than two spacings are left to a wall or to a periodic image;
     /// [`NematicError::ParticleTooCoarse`] when the radius is below two spacings.
     pub fn checked_in(&self, grid: &Grid) -> Result<(), NematicError> {
         let (h, extent) = (grid.spacing(), grid.extent());
@@ -85,12 +85,12 @@ impl Particle {
         Ok(())
     }
 
-    /// Centre (xi_N, from the lower corner of the grid).
+    /// Centre (ξ_N, from the lower corner of the grid).
     pub fn centre(&self) -> [f64; 3] {
         self.centre
     }
 
-    /// Radius R (xi_N).
+    /// Radius R (ξ_N).
     pub fn radius(&self) -> f64 {
         self.radius
     }
@@ -108,7 +108,7 @@ impl Particle {
         })
     }
 
-    /// Distance of `point` from the surface, negative inside.
+    /// Distance of `point` from the surface (ξ_N), negative inside.
     pub fn distance(&self, grid: &Grid, point: [f64; 3]) -> f64 {
         let d = self.offset(grid, point);
         (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt() - self.radius

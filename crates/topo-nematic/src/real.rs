@@ -1,6 +1,7 @@
 //! Storage precision of fields: f64 or f32; sums are in f64 with either.
 
 use fearless_simd::{Simd, SimdFloatElement};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// A number that fields are stored in: `f64` or `f32`.
@@ -45,13 +46,13 @@ impl Real for f32 {
 }
 
 /// Precision in which the field is stored while it is advanced.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Precision {
-    /// 8 bytes a number.
+    /// 8 bytes per number.
     #[default]
     Double,
-    /// 4 bytes a number: half the memory traffic, rounding errors of 6e-8 S.
+    /// 4 bytes per number: half the memory traffic, rounding errors of 6e-8 S.
     Single,
 }
 

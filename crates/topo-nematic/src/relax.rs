@@ -39,7 +39,7 @@ impl<'a, T: Real> Relaxation<'a, T> {
         self.kernel.spread(flat, &mut self.q);
     }
 
-    /// Goes on from what an earlier one had reached.
+    /// Continues from what an earlier one had reached.
     pub(crate) fn restore(&mut self, q: Vec<T>, velocity: Vec<T>, fire: Fire) {
         if q.len() == self.q.len() && velocity.len() == self.q.len() {
             self.q = q;

@@ -14,11 +14,11 @@ const N_MODES: usize = 40;
 /// A ring of low order around the vertical axis of the particle.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Ring {
-    /// Mean distance from the vertical axis, in xi_N.
+    /// Mean distance from the vertical axis, in ξ_N.
     pub radius: f64,
-    /// Mean height above the particle's centre, in xi_N.
+    /// Mean height above the particle's centre, in ξ_N.
     pub height: f64,
-    /// Amplitudes of the modes m = 1, 2, ... of its height z(φ), in xi_N.
+    /// Amplitudes of the modes m = 1, 2, ... of its height z(φ), in ξ_N.
     pub modes: Vec<f64>,
 }
 
@@ -30,7 +30,7 @@ impl Ring {
             .map_or(0, |(m, _)| m + 1)
     }
 
-    /// Amplitude of the strongest mode, in xi_N.
+    /// Amplitude of the strongest mode, in ξ_N.
     pub fn amplitude(&self) -> f64 {
         self.modes.iter().copied().fold(0.0, f64::max)
     }
@@ -38,8 +38,8 @@ impl Ring {
 
 /// The ring of a state: in each azimuthal sector the centre of the cells whose order is below `threshold`, weighted by how far below.
 ///
-/// None without a particle, when sectors without such cells show that no closed ring surrounds it, or when they lie elsewhere: at the
-/// poles, at the edge of the cell, everywhere.
+/// None without a particle, when sectors without such cells show that no closed ring surrounds it, or when such cells are
+/// elsewhere: at the poles, at the edge of the cell, everywhere.
 ///
 /// # Validation
 /// `only_low_order_around_the_particle_is_a_ring`, `undulations_of_a_ring_have_their_amplitudes_modes_and_place`
@@ -65,16 +65,17 @@ pub fn ring(state: &NematicState, threshold: f64) -> Option<Ring> {
     })
 }
 
-/// The closed line of the ring, relative to the particle's centre (xi_N): one point a sector of azimuth.
+/// The closed line of the ring, relative to the particle's centre (ξ_N): one point per sector of azimuth.
 ///
-/// Where the core of a disclination lies against the particle, [`defect_lines`](crate::defects::defect_lines) ends there; this line goes on.
+/// Where the core of a disclination touches the particle, [`defect_lines`](crate::defects::defect_lines) ends; this line
+/// continues.
 pub fn ring_line(state: &NematicState, threshold: f64) -> Option<Vec<[f64; 3]>> {
     let points = sectors(state, threshold)?.into_iter().enumerate();
     Some(points.map(|(s, centre)| place(s, centre)).collect())
 }
 
-/// Whether a point, relative to the particle's centre, is nearer to the particle than to the outer faces of the cell, periodic ones
-/// included: what lies beyond is not the particle's ring. Not without a particle.
+/// Whether a point, relative to the particle's centre, is nearer to the particle than to the outer faces of the cell, periodic
+/// ones included: what is beyond is not the particle's ring. False without a particle.
 pub fn is_near_particle(state: &NematicState, point: [f64; 3]) -> bool {
     let Some(particle) = state.particle() else {
         return false;

@@ -6,7 +6,7 @@ use topo_core::{Counters, Rejection, Rkc2Stages};
 use crate::kernel::run::{Combination, Kernel};
 use crate::real::Real;
 
-/// Limit of stages a step.
+/// Limit of stages per step.
 const MAX_STAGES: usize = 250;
 
 /// Largest ratio of Λ to the rate by the molecular field: well below one, where predictor and corrector turn unstable.
@@ -21,23 +21,23 @@ pub(crate) trait Drift<T> {
     fn at(&mut self, q: &[T], field: &[T], drift: &mut [T]) -> Result<(), Rejection>;
 }
 
-/// A field on its way, with all that a step needs; arrays are in the kernel's layout.
+/// A field that advances in time, with all that a step needs; arrays are in the kernel's layout.
 ///
-/// The method and its coefficients are those of [`topo_core::Rkc2`], applied here a second time: a stage is one pass over memory, in single
-/// or double precision (the molecular field of the last one, and the combination of the last, the one before, the start and its rate),
-/// where that one asks a model for rates as vectors and combines them in passes of its own.
+/// The method and its coefficients are those of [`topo_core::Rkc2`], applied here a second time: a stage is one pass over
+/// memory, in single or double precision (the molecular field of the last one, and the combination of the last, the one before,
+/// the start and its rate), whereas that one gets rates as vectors from a model and combines them in separate passes.
 ///
-/// A drift G(Q), as flow adds it, answers the molecular field H and is as stiff; each of its values is worth many stages. So a step sees it
-/// as a line in time, less a share of H that leaves what is stable:
+/// A drift G(Q), such as that of a flow, responds to the molecular field H and is as stiff; each of its values costs as much as
+/// many stages. So a step takes it as linear in time, minus a share of H chosen for stability:
 ///
 /// ```math
 /// \dot Q = (1 + \omega)\,\Gamma H(Q) + \Lambda(t), \qquad \Lambda = G - \omega\,\Gamma H
 /// ```
 ///
-/// Λ runs from its value at the start to the one extrapolated from the step before (predictor), then to the one at the end so found
-/// (corrector): order two (1.8 at a fixed step in layers next to walls, where G and Γ H cancel), and stable, as Λ is less than
-/// (1 + ω) Γ H for the stiffest mode.
-/// The error estimate compares the step with the trapezoidal rule on the *whole* rate, each end with the drift of its own.
+/// Λ runs from its value at the start to the one extrapolated from the step before (predictor), then to the one at the end so
+/// found (corrector): order two (1.8 at a fixed step in layers next to walls, where G and Γ H cancel), and stable, as Λ is less
+/// than (1 + ω) Γ H for the stiffest mode. The error estimate compares the step with the trapezoidal rule on the *whole* rate,
+/// with the drift at each end.
 pub(crate) struct Stabilised<T> {
     pub q: Vec<T>,
     /// Rate at `q`, if known.
@@ -116,7 +116,7 @@ impl<T: Real> Stabilised<T> {
         self
     }
 
-    /// Makes the drift at the present field known.
+    /// Computes the drift at the present field.
     ///
     /// # Errors
     /// As [`Drift::at`].
@@ -148,7 +148,7 @@ impl<T: Real> Stabilised<T> {
         }
     }
 
-    /// What a later run needs to go on to the same bits; none without a drift or before the second step.
+    /// What a later run needs to continue to the same bits; none without a drift or before the second step.
     pub(crate) fn drift_memory(&self) -> Option<DriftMemory> {
         let drift = self.drift.as_ref()?;
         Some(DriftMemory {
@@ -157,7 +157,7 @@ impl<T: Real> Stabilised<T> {
         })
     }
 
-    /// Goes on from a memory that fits.
+    /// Continues from a memory that fits.
     pub(crate) fn restore_drift(&mut self, memory: &DriftMemory) {
         if let Some(drift) = &mut self.drift {
             for (x, y) in drift.earlier.iter_mut().zip(&memory.earlier) {
@@ -178,7 +178,7 @@ impl<T: Real> Stabilised<T> {
             / (self.stretch() * self.mobility * kernel.stiffest())
     }
 
-    /// Makes the rate at the present field known.
+    /// Computes the rate at the present field.
     pub(crate) fn update_rate(&mut self, kernel: &Kernel<T>) {
         if !self.rate_known {
             self.square_of_field = rate(kernel, self.mobility, &self.q, &mut self.rate);

@@ -7,8 +7,8 @@ use crate::{Faces, Grid, NematicError, Particle};
 
 /// The tensor field of a nematic on its grid.
 ///
-/// Five components (xx, xy, xz, yy, yz), one after the other, each of n_cells numbers. Cells whose centre lies inside the particle
-/// hold what was there last and mean nothing.
+/// Five components (xx, xy, xz, yy, yz), one after the other, each of n_cells numbers. Cells whose centre lies inside the
+/// particle hold old values without meaning.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Unchecked")]
 pub struct NematicState {
@@ -78,7 +78,7 @@ impl NematicState {
         Self::new(grid, particle, q)
     }
 
-    /// This field at the cells of another state, by trilinear interpolation; both boxes are taken to be of one size.
+    /// This field at the cells of another state, by trilinear interpolation; both boxes must have the same size.
     pub(crate) fn interpolated(&self, onto: &Self) -> Self {
         let (fine, coarse) = (onto.grid.cells(), self.grid.cells());
         let mut result = onto.clone();

@@ -10,7 +10,7 @@ use crate::tensor::order_and_director;
 /// A surface of triangles.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct TriangleMesh {
-    /// Corners (xi_N).
+    /// Corners (ξ_N).
     pub vertices: Vec<[f64; 3]>,
     /// Indices of the corners of each triangle, counter-clockwise seen from the side of higher order.
     pub triangles: Vec<[u32; 3]>,
@@ -108,7 +108,7 @@ impl TriangleMesh {
         }
     }
 
-    /// Sum of the areas of the triangles.
+    /// Sum of the areas of the triangles, in ξ_N².
     pub fn area(&self) -> f64 {
         let vector = |t: &[u32; 3]| {
             let [p, q, r] = t.map(|v| nalgebra::Vector3::from(self.vertices[v as usize]));
@@ -133,7 +133,7 @@ pub struct VolumeSlice {
     pub director: Vec<[f64; 3]>,
 }
 
-/// The plane of cells number `index` along `axis`; the last one when there are fewer.
+/// The plane of cells number `index` along `axis` (0, 1, 2 for x, y, z); the last plane when there are fewer.
 pub fn volume_slice(state: &NematicState, axis: usize, index: usize) -> VolumeSlice {
     let axis = axis.min(2);
     let cells = state.grid().cells();

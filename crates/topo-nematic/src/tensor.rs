@@ -53,8 +53,8 @@ pub fn matrix(q: &Tensor5) -> Matrix3<f64> {
 
 /// Scalar order S (the largest eigenvalue of Q) and director n (its unit eigenvector, with n_z >= 0).
 ///
-/// Where the two largest eigenvalues coincide, as in the middle of a defect, some unit vector of their plane is given; a tensor that is
-/// not finite has order NaN and director z.
+/// Where the two largest eigenvalues coincide, as in the middle of a defect, the director is some unit vector of their plane; a
+/// tensor that is not finite has order NaN and director z.
 ///
 /// # Validation
 /// `order_and_director_of_a_uniaxial_tensor`
@@ -107,8 +107,8 @@ pub fn order_and_director(q: &Tensor5) -> (f64, [f64; 3]) {
 /// \lambda^3 - 3 p^2 \lambda - \det Q = 0, \quad p^2 = Q{:}Q/6, \quad p \le \lambda \le 2 p
 /// ```
 ///
-/// Newton's method comes down to it from 2p, which it is when Q is uniaxial, and so needs a few steps nearly everywhere; where the
-/// two largest eigenvalues nearly coincide it is slow, and the trigonometric formula takes over.
+/// Newton's method descends to it from 2p, its value for a uniaxial Q, and so needs few steps nearly everywhere. Where the two
+/// largest eigenvalues nearly coincide it is slow, and the trigonometric formula is used instead.
 ///
 /// # Validation
 /// `eigenvalues_are_those_of_the_matrix`

@@ -1,12 +1,13 @@
 //! Work on a thread of its own, while the calling thread hears what it says and whether Ctrl-C was pressed.
 
+use std::path::PathBuf;
 use std::sync::mpsc::{RecvTimeoutError, SyncSender, sync_channel};
 use std::thread;
 use std::time::Duration;
 
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
-use topo_core::Interrupt;
+use topo_core::{Interrupt, RunHooks};
 
 use crate::refusal::Refusal;
 
@@ -87,6 +88,18 @@ where
         let _ = py.detach(|| worker.join());
     }
     Err(stopped)
+}
+
+/// A file for checkpoints and the seconds between them.
+pub type Checkpoint = Option<(PathBuf, f64)>;
+
+/// Hooks of a run that an interrupt stops and that keeps its checkpoints in a file, if there is one.
+pub fn hooks<'a, F: ?Sized>(interrupt: &Interrupt, file: &Checkpoint) -> RunHooks<'a, F> {
+    let hooks = RunHooks::new(interrupt);
+    match file {
+        Some((path, seconds)) => hooks.with_checkpoint(path, *seconds),
+        None => hooks,
+    }
 }
 
 /// The same for work that says nothing and leaves nothing behind.

@@ -1,7 +1,5 @@
 //! The nematic battery: charge, switch, discharge.
 
-use std::path::PathBuf;
-
 use numpy::ndarray::{Array, Array2, Array3};
 use numpy::{IntoPyArray, PyArray1, PyArray2};
 use pyo3::exceptions::PyRuntimeError;
@@ -18,7 +16,7 @@ use topo_nematic::{
     Threads,
 };
 
-use crate::attend::{Leave, Reporter, attend};
+use crate::attend::{Checkpoint, Leave, Reporter, attend, hooks};
 use crate::refusal::Refusal;
 use crate::rods::{curve, stop};
 use crate::values::settings;
@@ -26,16 +24,6 @@ use crate::values::settings;
 /// A colloid between plates.
 #[pyclass(frozen)]
 pub struct ColloidBattery(NematicBattery);
-
-/// A file for checkpoints and the seconds between them.
-type Checkpoint = Option<(PathBuf, f64)>;
-
-fn with_file<'a>(hooks: RunHooks<'a>, file: &Checkpoint) -> RunHooks<'a> {
-    match file {
-        Some((path, seconds)) => hooks.with_checkpoint(path, *seconds),
-        None => hooks,
-    }
-}
 
 /// What a run says: how far it is, or the nematic at an output time.
 enum Notice {
@@ -119,7 +107,7 @@ impl ColloidBattery {
         let (token, wants) = (interrupt.clone(), observer.is_some());
         let work = move |reporter: &Reporter<Notice, ChargedNematic>| {
             let mut see = |p: &Progress| reporter.report(Notice::Progress(*p));
-            let hooks = with_file(RunHooks::new(&token), &checkpoint);
+            let hooks: RunHooks<'_> = hooks(&token, &checkpoint);
             let mut hooks = if wants {
                 hooks.with_progress(&mut see)
             } else {
@@ -227,8 +215,9 @@ impl SwitchedColloid {
                 }
                 rings.extend(line.map(|line| (s.time, line)));
             };
-            let hooks = RunHooks::new(&token).with_samples(&mut see);
-            let run = switched.discharge(&settings, &mut with_file(hooks, &checkpoint))?;
+            let hooks: RunHooks<'_> = hooks(&token, &checkpoint);
+            let mut hooks = hooks.with_samples(&mut see);
+            let run = switched.discharge(&settings, &mut hooks)?;
             Ok((run, rings))
         };
         let listen = |py: Python<'_>, notice: Notice| notice.say(py, observer.as_ref());

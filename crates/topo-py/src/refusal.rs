@@ -20,16 +20,16 @@ enum Class {
     File,
 }
 
-/// What was refused and why, away from the interpreter.
+/// What was refused and why, away from the interpreter; small, as it is the error of most functions here.
 #[derive(Debug, Clone, Default)]
 pub struct Refusal {
     class: Class,
     message: String,
-    file: Option<String>,
+    file: Option<Box<str>>,
     line: Option<usize>,
-    key: Option<String>,
-    value: Option<String>,
-    remedy: Option<String>,
+    key: Option<Box<str>>,
+    value: Option<Box<str>>,
+    remedy: Option<Box<str>>,
 }
 
 impl Refusal {
@@ -38,9 +38,9 @@ impl Refusal {
         let value = value.to_string();
         Self {
             message: format!("{key} = {value}: {remedy}"),
-            key: Some(key.to_owned()),
-            value: Some(value),
-            remedy: Some(remedy.to_owned()),
+            key: Some(key.into()),
+            value: Some(value.into()),
+            remedy: Some(remedy.into()),
             ..Self::default()
         }
     }
@@ -51,36 +51,6 @@ impl Refusal {
             class,
             message,
             ..Self::default()
-        }
-    }
-
-    /// A file that is no scene: the parser's message shows the line, and what stands in it.
-    fn no_scene(path: &std::path::Path, message: &str, whole: String) -> Self {
-        let place = message.split_once("at line ").map(|(_, rest)| rest);
-        let digits = |text: &str| {
-            text.split(|c: char| !c.is_ascii_digit())
-                .next()?
-                .parse()
-                .ok()
-        };
-        let line: Option<usize> = place.and_then(digits);
-        let shown = message.lines().find_map(|text| {
-            let (number, shown) = text.split_once(" | ")?;
-            number.trim().parse::<usize>().ok()?;
-            Some(shown.trim().to_owned())
-        });
-        let (key, value) = match shown.as_deref().and_then(|text| text.split_once('=')) {
-            Some((key, value)) => (Some(key.trim().to_owned()), Some(value.trim().to_owned())),
-            None => (shown, None),
-        };
-        Self {
-            class: Class::Scene,
-            message: whole,
-            file: Some(path.display().to_string()),
-            line,
-            key,
-            value,
-            remedy: message.trim_end().lines().last().map(str::to_owned),
         }
     }
 }
@@ -133,7 +103,7 @@ impl From<KnotError> for Refusal {
             _ => Class::Knot,
         };
         let name = match &error {
-            KnotError::UnknownKnot { name, .. } => Some(name.clone()),
+            KnotError::UnknownKnot { name, .. } => Some(name.clone().into()),
             _ => None,
         };
         Self {
@@ -152,24 +122,19 @@ impl From<LabError> for Refusal {
             ..Self::default()
         };
         match error {
-            LabError::SceneValue {
-                path,
-                line,
-                key,
-                value,
-                remedy,
-            } => Self {
-                file: Some(path.display().to_string()),
-                line,
-                key: Some(key),
-                value: Some(value),
-                remedy: Some(remedy),
+            LabError::Scene(fault) => Self {
+                file: Some(fault.file.into()),
+                line: fault.line,
+                key: Some(fault.key)
+                    .filter(|key| !key.is_empty())
+                    .map(Into::into),
+                value: Some(fault.found.into()),
+                remedy: Some(fault.expected.into()),
                 ..scene
             },
-            LabError::Scene { path, message } => Self::no_scene(&path, &message, whole),
             LabError::SceneName { path, reason } => Self {
-                file: Some(path.display().to_string()),
-                remedy: Some(reason),
+                file: Some(path.display().to_string().into()),
+                remedy: Some(reason.into()),
                 ..scene
             },
             LabError::Option {
@@ -181,8 +146,8 @@ impl From<LabError> for Refusal {
                 ..Self::value(option.trim_start_matches('-'), value, &remedy)
             },
             LabError::Goal { goal, reason } => Self {
-                value: Some(goal),
-                remedy: Some(reason),
+                value: Some(goal.into()),
+                remedy: Some(reason.into()),
                 ..scene
             },
             LabError::Unreadable { source, .. }
@@ -225,11 +190,11 @@ impl Refusal {
             _ => "TopoError",
         };
         let fields = PyDict::new(py);
-        fields.set_item("file", self.file)?;
+        fields.set_item("file", self.file.as_deref())?;
         fields.set_item("line", self.line)?;
-        fields.set_item("key", self.key)?;
-        fields.set_item("value", self.value)?;
-        fields.set_item("remedy", self.remedy)?;
+        fields.set_item("key", self.key.as_deref())?;
+        fields.set_item("value", self.value.as_deref())?;
+        fields.set_item("remedy", self.remedy.as_deref())?;
         let class = py.import("topobatteries.errors")?.getattr(class)?;
         let error = class.call((self.message,), Some(&fields))?;
         Ok(PyErr::from_value(error))

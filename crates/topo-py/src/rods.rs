@@ -5,11 +5,11 @@ use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2}
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use topo_analysis::{DischargeTimes, ELASTIC_SHARES};
-use topo_core::{DischargeCurve, StopReason};
+use topo_core::{DischargeCurve, Interrupt, StopReason};
 use topo_lab::{ElasticScene, Preset, perturbed};
-use topo_rod::{CutSite, Guards, PhaseReport, RodSample, RodState, RunHooks, RunRecord};
+use topo_rod::{CutSite, Guards, PhaseReport, RodError, RodSample, RodState, RunHooks, RunRecord};
 
-use crate::attend::quietly;
+use crate::attend::{Checkpoint, Leave, Reporter, attend, hooks};
 use crate::curves::{polyline, rows};
 use crate::refusal::Refusal;
 use crate::values::settings;
@@ -86,11 +86,17 @@ impl RodBattery {
     }
 
     /// Lets the closed rod relax.
-    fn charge(&self, py: Python<'_>, given: &Bound<'_, PyDict>) -> PyResult<ChargedRod> {
+    fn charge(
+        &self,
+        py: Python<'_>,
+        given: &Bound<'_, PyDict>,
+        observer: Option<Bound<'_, PyAny>>,
+        checkpoint: Checkpoint,
+    ) -> PyResult<ChargedRod> {
         let settings = settings(&self.scene.charge, given)?;
         let battery = self.battery.clone();
-        let work = move |stop: &_| Ok(battery.charge(&settings, &mut RunHooks::new(stop))?);
-        let charged = quietly(py, work)?;
+        let work = move |hooks: &mut RunHooks<'_>| battery.charge(&settings, hooks);
+        let charged = phase(py, "charge", observer, checkpoint, work)?;
         let scene = self.scene.clone();
         Ok(ChargedRod { charged, scene })
     }
@@ -166,11 +172,13 @@ impl CutRod {
         &self,
         py: Python<'py>,
         given: &Bound<'_, PyDict>,
+        observer: Option<Bound<'_, PyAny>>,
+        checkpoint: Checkpoint,
     ) -> PyResult<Bound<'py, PyDict>> {
         let settings = settings(&self.scene.discharge, given)?;
         let cut = self.cut.clone();
-        let work = move |stop: &_| Ok(cut.discharge(&settings, &mut RunHooks::new(stop))?);
-        let run = quietly(py, work)?;
+        let work = move |hooks: &mut RunHooks<'_>| cut.discharge(&settings, hooks);
+        let run = phase(py, "discharge", observer, checkpoint, work)?;
         let dict = record(py, &run.record, self.cut.charged.battery())?;
         dict.set_item("at", run.at)?;
         dict.set_item("removed", run.removed)?;
@@ -186,6 +194,62 @@ impl CutRod {
         Ok(dict)
     }
 }
+
+/// Runs a phase; an observer sees copies of its samples.
+fn phase<T: Send + 'static>(
+    py: Python<'_>,
+    name: &'static str,
+    observer: Option<Bound<'_, PyAny>>,
+    checkpoint: Checkpoint,
+    work: impl FnOnce(&mut RunHooks<'_>) -> Result<T, RodError> + Send + 'static,
+) -> PyResult<T> {
+    let interrupt = Interrupt::new();
+    let (token, wants) = (interrupt.clone(), observer.is_some());
+    let leave = match checkpoint {
+        Some(_) => Leave::WhenKept,
+        None => Leave::AtOnce,
+    };
+    let work = move |reporter: &Reporter<Box<RodSample>, T>| {
+        let mut see = |s: &RodSample| reporter.report(Box::new(s.clone()));
+        let hooks: RunHooks<'_> = hooks(&token, &checkpoint);
+        let mut hooks = if wants {
+            hooks.with_samples(&mut see)
+        } else {
+            hooks
+        };
+        Ok(work(&mut hooks)?)
+    };
+    let listen = |py: Python<'_>, sample: Box<RodSample>| match &observer {
+        Some(to) => to.call1((seen(py, name, &sample)?,)).map(drop),
+        None => Ok(()),
+    };
+    attend(py, &interrupt, leave, listen, work)
+}
+
+/// A sample as an observer sees it.
+fn seen<'py>(py: Python<'py>, phase: &str, s: &RodSample) -> PyResult<Bound<'py, PyDict>> {
+    let dict = PyDict::new(py);
+    dict.set_item("phase", phase)?;
+    dict.set_item("time", s.time)?;
+    for (name, of) in COLUMNS {
+        dict.set_item(name, of(s))?;
+    }
+    dict.set_item("points", rows(py, s.state.vertices().iter().copied()))?;
+    Ok(dict)
+}
+
+/// A number of a sample, by its name.
+type Column = (&'static str, fn(&RodSample) -> f64);
+
+/// Those besides its time.
+const COLUMNS: [Column; 6] = [
+    ("energy", RodSample::elastic),
+    ("writhe", |s| s.writhe),
+    ("total_twist", |s| s.total_twist),
+    ("n_contacts", |s| s.n_contacts as f64),
+    ("min_distance", |s| s.min_distance.unwrap_or(f64::NAN)),
+    ("end_to_end", |s| s.end_to_end),
+];
 
 fn times(curve: &DischargeCurve, parts: &[&str], start: f64) -> DischargeTimes {
     DischargeTimes::of(curve, parts, start, &ELASTIC_SHARES)
@@ -289,12 +353,9 @@ fn samples<'py>(
         )
     };
     column("time", &|s| s.time)?;
-    column("energy", &RodSample::elastic)?;
-    column("writhe", &|s| s.writhe)?;
-    column("total_twist", &|s| s.total_twist)?;
-    column("n_contacts", &|s| s.n_contacts as f64)?;
-    column("min_distance", &|s| s.min_distance.unwrap_or(f64::NAN))?;
-    column("end_to_end", &|s| s.end_to_end)?;
+    for (name, of) in COLUMNS {
+        column(name, &of)?;
+    }
     let n = samples.first().map_or(0, |s| s.state.n_vertices());
     let states = || samples.iter().map(|s| &s.state);
     let points = states().flat_map(|s| s.vertices().iter().flat_map(|x| [x.x, x.y, x.z]));

@@ -122,6 +122,32 @@ def test_a_colloid_is_charged_and_discharged_under_observation(tmp_path):
     assert pickle.loads(pickle.dumps(run)).t90 == run.t90
 
 
+def test_a_fibre_is_observed_and_goes_on_from_a_checkpoint(tmp_path):
+    rod = topo.Rod(trefoil(), twist=1.0, edges=40, tolerance=1e-2)
+    seen = []
+    charged = rod.charge(duration=0.05, observer=seen.append)
+    assert [s["time"] for s in seen] == list(charged.run.samples["time"]) and seen[0]["phase"] == "charge"
+    assert np.array_equal(seen[-1]["points"], charged.run.samples["points"][-1])
+    whole = charged.cut(0.25).discharge(until_released=0.9)
+
+    class Enough(Exception):
+        pass
+
+    def stop(sample):
+        if sample["energy"] < 0.5 * whole.start:
+            raise Enough
+
+    with pytest.raises(Enough):
+        charged.cut(0.25).discharge(until_released=0.9, observer=stop, checkpoint=tmp_path / "discharge")
+    assert (tmp_path / "discharge").exists()
+    again = []
+    rest = charged.cut(0.25).discharge(until_released=0.9, observer=again.append, checkpoint=tmp_path / "discharge")
+    assert np.array_equal(rest.energy, whole.energy) and np.array_equal(rest.time, whole.time)
+    assert rest.t50 == whole.t50
+    # it did not begin again
+    assert 0 < len(again) < len(whole.samples["time"])
+
+
 def test_what_lives_in_one_process_says_so():
     rod = topo.Rod(trefoil(), edges=40, tolerance=1e-2)
     assert pickle.loads(pickle.dumps(rod)).ropelength == rod.ropelength

@@ -100,10 +100,10 @@ def test_an_exception_of_the_callers_stops_the_run(tmp_path):
 SLOW = """
 import sys, topobatteries as topo
 scene = {"rod": {"knot": "3_1", "twist": {"from": 0.1, "to": 2.0, "n": 40}, "contact": {}}, "accuracy": {"edges": 60}}
-def told(event):
+def heard(event):
     if event.kind == "case" and event.done == 2:
         print("now", flush=True)
-topo.run(scene, out=sys.argv[1], name="slow", jobs=1, progress=told)
+topo.run(scene, out=sys.argv[1], name="slow", jobs=1, progress=heard)
 """
 HELD = """
 import topobatteries as topo

@@ -38,7 +38,7 @@ WRONG = {
     "unknown knot": (lambda _: topo.Knot("7_8"), "no knot `7_8` in the table"),
     "closed file": (lambda p: topo.Curve.read(closed_file(p)), "this is a closed file: give its path"),
     "missing file": (lambda p: topo.run(p / "none.toml", progress=False), "none.toml"),
-    "unknown key": (lambda _: run(changed("rod", slendernes=50)), "unknown field `slendernes`, expected one of"),
+    "unknown key": (lambda _: run(changed("rod", slendernes=50)), "did you mean `slenderness`?"),
     "impossible value": (lambda _: run(changed("rod", slenderness=-50)), "rod.slenderness = -50"),
     "value of the wrong type": (lambda _: run(changed("rod", twist="a lot")), "rod.twist"),
     "object in a scene": (lambda _: run(changed("rod", twist=object())), "rod.twist is of type object: give a number"),
@@ -81,7 +81,7 @@ def test_scene_errors_have_file_line_key_value_and_remedy(tmp_path):
     with pytest.raises(topo.SceneError) as caught:
         topo.run(file, progress=False)
     error = caught.value
-    assert (error.line, error.key, error.value) == (3, "lenght", "5") and error.remedy.startswith("unknown field")
+    assert (error.line, error.key, error.value) == (3, "rod.lenght", "5") and error.remedy.startswith("[rod] has no such key")
 
 
 def test_results_name_cases_that_are_there(quick, small):

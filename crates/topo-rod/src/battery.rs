@@ -27,7 +27,7 @@ pub struct RodBattery {
     /// In its own unit.
     centreline: Polyline,
     start: RodState,
-    /// Terms of the caller's own.
+    /// Terms supplied by the caller.
     own_terms: Vec<TermFactory>,
 }
 
@@ -44,8 +44,8 @@ impl RodBattery {
 
     /// A battery on a closed centreline, in any unit.
     ///
-    /// Its ropelength, length over thickness, is measured on the curve itself, so that strands of the tube that the reading makes
-    /// of it do not overlap. The curve is resampled to the number of edges asked for and scaled as the reading says.
+    /// The ropelength (length over thickness) is measured on the given curve, so that the tube of the reading does not overlap
+    /// itself. The curve is then resampled to the number of edges in `parameters` and scaled as the reading says.
     ///
     /// # Errors
     /// A parameter out of range, or a curve that is open, touches itself or is unusable.
@@ -96,10 +96,11 @@ impl RodBattery {
         })
     }
 
-    /// The same battery with one more energy term, of the caller's own, in every phase: `make` is called with the state from which
-    /// a phase starts, closed for the charge and open for the discharge.
+    /// The same battery with one more energy term, supplied by the caller, in every phase: `make` is called with the state from
+    /// which a phase starts, closed for the charge and open for the discharge.
     ///
-    /// Vertices of the open rod are numbered from the cut, so that a term which tells vertices apart does so by where they are.
+    /// Vertices of the open rod are numbered from the cut, so a term that treats vertices differently must identify them by
+    /// their position.
     ///
     /// # Errors
     /// A name that is no column of a table, or that another part of the energy account has.
@@ -125,7 +126,8 @@ impl RodBattery {
 
     /// Elastic energy per area and length at each vertex of `state`, in E_b: that of bend, twist, stretch and further elastic terms.
     ///
-    /// Times A it is the density in E_b h² that the figures show. Sums with the vertices' share of arclength to the elastic energy.
+    /// Multiplied by A it is the density in E_b h² that the figures show. Multiplied by the arclengths of the vertices and
+    /// summed, it is the elastic energy.
     ///
     /// # Validation
     /// `val_density_of_a_bent_twisted_stretched_coil`, `law_density_sums_to_the_elastic_energy`
@@ -146,8 +148,8 @@ impl RodBattery {
         crate::density::energy_density(&terms, at)
     }
 
-    /// The same battery started from `curve`, its [`centreline`](Self::centreline) with small displacements, as the imperfections
-    /// of a real fibre; the tube stays that of the undisturbed one.
+    /// The same battery started from `curve`: its [`centreline`](Self::centreline) with small displacements, like the
+    /// imperfections of a real fibre. The tube stays that of the undisturbed curve.
     ///
     /// # Errors
     /// A curve with another number of vertices, or one that is anywhere more than h/2 from the undisturbed one.
@@ -169,10 +171,10 @@ impl RodBattery {
         })
     }
 
-    /// The same battery started from the mirror image of its curve, the twist as it is.
+    /// The same battery started from the mirror image of its curve; the twist is not mirrored.
     ///
     /// # Errors
-    /// None that the battery itself has not met.
+    /// As [`new`](Self::new); none in practice, since the curve itself was accepted.
     pub fn mirrored(&self) -> Result<Self, RodError> {
         let centreline = self.centreline.mirrored();
         Ok(Self {
@@ -207,7 +209,7 @@ impl RodBattery {
         &self.parameters
     }
 
-    /// Accuracy asked for.
+    /// The accuracy settings.
     pub fn accuracy(&self) -> &Accuracy {
         &self.accuracy
     }

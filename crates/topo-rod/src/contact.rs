@@ -1,4 +1,4 @@
-//! Which parts of a rod can touch: broad phase, skin list, window along the rod, and distances of segments.
+//! Which parts of a rod can touch: broad phase, Verlet list, window along the rod, and distances of segments.
 
 mod broad_phase;
 mod hard_core;

@@ -2,9 +2,13 @@
 
 use crate::energy::{At, EnergyKind, EnergyTerm, RodParts};
 
-/// Elastic energy per area and length at each vertex, in E_b: that of the elastic terms, in the order of tables.
+/// Elastic energy per area and length at each vertex, in E_b: the sum of the elastic terms, in the order of tables.
 ///
-/// Times A it is the density in E_b h² that the figures show. Sums with the vertices' share of arclength to the elastic energy.
+/// ```math
+/// w = \frac{\kappa^2 + \alpha\, \theta'^2}{8} + \frac{\gamma}{2} (|x'| - 1)^2, \qquad e = \sum_i w_i l_i
+/// ```
+///
+/// Multiplied by A it is the density in E_b h² that the figures show. l_i is the arclength of vertex i.
 pub(crate) fn energy_density(terms: &[Box<dyn EnergyTerm>], at: At<'_>) -> Vec<f64> {
     let mut density = vec![0.0; at.state.n_vertices()];
     for part in RodParts::of(terms).iter() {

@@ -1,12 +1,13 @@
-//! What holds, moves or loads the ends of an open rod.
+//! How the ends of an open rod are held, moved and loaded.
 
 use nalgebra::Vector3;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::{RodError, RodState};
 
 /// How one end is held.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum EndCondition {
     /// Nothing holds it.
@@ -19,31 +20,37 @@ pub enum EndCondition {
 }
 
 /// Prescribed motion and load of one end; zero by default.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct EndMotion {
     /// Velocity of a held end, in h E_b/η.
+    #[schemars(extend("x-unit" = "h E_b/η", "examples" = [[0.1, 0.0, 0.0]]))]
     pub velocity: [f64; 3],
     /// Rotation rate about the end tangent of a clamped end, in E_b/η.
+    #[schemars(extend("x-unit" = "E_b/η"), example = 0.1)]
     pub rotation_rate: f64,
     /// Force on a free end, per area, in E_b.
+    #[schemars(extend("x-unit" = "E_b", "examples" = [[0.1, 0.0, 0.0]]))]
     pub force: [f64; 3],
     /// Torque about the tangent on an end that is not clamped, per area, in E_b h.
+    #[schemars(extend("x-unit" = "E_b h"), example = 0.1)]
     pub torque: f64,
 }
 
-/// Both ends of an open rod. The default, free and unloaded, costs nothing.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+/// Both ends of an open rod. The default is free and unloaded, at no cost.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Ends {
     /// How the first and the last vertex are held.
+    #[schemars(extend("examples" = [["clamped", "free"]]))]
     pub conditions: [EndCondition; 2],
     /// How they move and what loads them.
+    #[schemars(extend("examples" = [[{ "velocity": [-0.1, 0.0, 0.0] }, { "velocity": [0.1, 0.0, 0.0] }]]))]
     pub motions: [EndMotion; 2],
 }
 
 impl Ends {
-    /// Checks that loads act on what is free and motions on what is held, and that forces on a free rod balance.
+    /// Checks that loads act on free ends and motions on held ends, and that the forces on a free rod balance.
     ///
     /// # Errors
     /// Names the contradiction.
@@ -105,7 +112,7 @@ impl Ends {
         self.motions != [EndMotion::default(); 2]
     }
 
-    /// Vertices that are held, each with the velocity it is given.
+    /// Vertices that are held, each with its prescribed velocity, in h E_b/η.
     pub fn held_vertices(&self, state: &RodState) -> Vec<(usize, Vector3<f64>)> {
         let last = state.n_vertices() - 1;
         let mut held = Vec::new();
@@ -124,7 +131,7 @@ impl Ends {
         held
     }
 
-    /// Edges whose rotation is held, each with its rate.
+    /// Edges whose rotation is held, each with its prescribed rate, in E_b/η.
     pub fn held_edges(&self, state: &RodState) -> Vec<(usize, f64)> {
         [(0, 0), (1, state.n_edges() - 1)]
             .into_iter()

@@ -1,10 +1,11 @@
 //! The energy of a rod as a sum of terms: one struct and one file each behind a small object-safe trait.
 //!
 //! ```math
-//! e = E/A = ½ ∫ [ (κ² + α θ'²)/4 + γ (|x'| − 1)² ] ds + e_contact
+//! e = \frac{E}{A} = \frac12 \int \left[ \frac{\kappa^2 + \alpha\, \theta'^2}{4} + \gamma\, (|x'| - 1)^2 \right] ds
+//!   + e_{\text{contact}}
 //! ```
 //!
-//! A dynamic call per term is free beside the loop inside it, so a scene that leaves a term out simply has a shorter list.
+//! One dynamic call per term costs nothing compared with the loop inside it. A scene that leaves a term out has a shorter list.
 
 mod bend;
 mod contact;
@@ -44,7 +45,7 @@ pub struct At<'a> {
 }
 
 impl At<'_> {
-    /// Arclength that vertex `i` stands for, in h: that of an edge, half of it at a free end.
+    /// Arclength l_i of vertex `i`, in h: that of an edge, half of it at a free end.
     pub fn share(&self, i: usize) -> f64 {
         if self.state.interior().contains(&i) {
             self.state.rest_length()
@@ -54,12 +55,12 @@ impl At<'_> {
     }
 }
 
-/// Generalised force −∂e/∂(x, θ): a vector a vertex, a torque an edge.
+/// Generalised force −∂e/∂(x, θ): a vector per vertex, a torque per edge.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Force {
-    /// −∂e/∂x_i, one a vertex.
+    /// −∂e/∂x_i, one per vertex, in E_b.
     pub vertex: Vec<Vector3<f64>>,
-    /// −∂e/∂θ_j, one an edge.
+    /// −∂e/∂θ_j, one per edge, in E_b h.
     pub torque: Vec<f64>,
 }
 
@@ -73,7 +74,8 @@ impl Force {
     }
 }
 
-/// Symmetric block matrix of a rod: 3 × 3 blocks on the diagonal, to the first and second neighbour, and for each pair in contact.
+/// Symmetric block matrix of a rod, in E_b/h: 3 × 3 blocks on the diagonal, to the first and second neighbour, and for each
+/// pair in contact.
 #[derive(Debug, Clone, Default)]
 pub struct Stiffness {
     /// Block (i, i).
@@ -111,48 +113,52 @@ impl Stiffness {
     }
 }
 
-/// One term e(x, θ) of the energy, for the terms of this crate as for one of a caller's own.
+/// One term e(x, θ) of the energy, of this crate or of the caller.
 ///
 /// ```math
-/// e = E/A = Σ_{terms} e_{term}(x, θ),   f_i = −∂e/∂x_i,   τ_j = −∂e/∂θ_j
+/// e = \frac{E}{A} = \sum_{\text{terms}} e_{\text{term}}(x, \theta), \qquad
+/// f_i = -\frac{\partial e}{\partial x_i}, \quad \tau_j = -\frac{\partial e}{\partial \theta_j}
 /// ```
 ///
-/// Units: lengths in h, energies per cross section area in E_b h, forces in E_b, torques in E_b h, stiffness in E_b/h, densities in
-/// E_b. A term of energy w a length stores Σ_i w_i l_i, with l_i = l_0 at every vertex, l_0/2 at those of free ends
-/// ([`At::share`]), and has the density w_i.
+/// Units: lengths in h, energies per cross section area in E_b h, forces in E_b, torques in E_b h, stiffness in E_b/h,
+/// densities in E_b. A term of energy w per length stores Σ_i w_i l_i, with l_i = l_0 at every vertex and l_0/2 at free ends
+/// ([`At::share`]); its density is w_i.
 ///
-/// Everything else follows the list of terms: ledger, curves, samples, tables, energy density and, for an
-/// [elastic](EnergyKind::Elastic) term, the end of a discharge and its times. These count down to zero, so the least energy of an
-/// elastic term should be zero. The spectral bound of the stabilised integrator is measured on the forces and asks for nothing.
+/// The following is derived from the list of terms: ledger, curves, samples, tables, energy density and, for an
+/// [elastic](EnergyKind::Elastic) term, the end of a discharge and its times. Released shares count down to zero energy, so the
+/// lowest energy of an elastic term should be zero. The spectral bound of the stabilised integrator is measured on the forces
+/// and needs nothing from a term.
 ///
-/// What holds a rod is its ends alone: the viscosity is internal, so that a rod with free ends would follow a force on the whole of it
-/// at once. Its centroid is kept instead, and of forces that do not sum to zero the mean is taken out, which does no work. Torques about
-/// the tangents of a free rod must sum to zero.
+/// Only its ends can hold a rod. The viscosity is internal, so a rod with free ends would follow a net force at once. Its
+/// centroid is kept fixed instead: the mean force is subtracted, which does no work. Torques about the tangents of a free rod
+/// must sum to zero.
 ///
-/// [`RodBattery::with`](crate::RodBattery::with) and [`RodModel::with`](crate::RodModel::with) add a term of the caller's own.
+/// [`RodBattery::with`](crate::RodBattery::with) and [`RodModel::with`](crate::RodModel::with) add a term of the caller.
 /// [`gradient_error`] checks its force.
 ///
 /// # Validation
-/// `val_circle_in_a_trap_shrinks_as_its_closed_form`, `val_cut_circle_in_a_weak_trap` add one from outside.
+/// `val_circle_in_a_trap_shrinks_as_its_closed_form`, `val_cut_circle_in_a_weak_trap` add one from outside this crate.
 pub trait EnergyTerm: Send {
     /// Name used in the ledger and in tables: lower case letters, digits and `_`.
     fn name(&self) -> &'static str;
 
-    /// What becomes of its energy.
+    /// Whether its energy counts as stored.
     fn kind(&self) -> EnergyKind {
         EnergyKind::Elastic
     }
 
-    /// Energy per area at a state.
+    /// Energy per area at a state, in E_b h.
     fn energy(&self, at: At<'_>) -> f64;
 
-    /// Adds −∂e/∂x and −∂e/∂θ, and returns the energy. Called at every step: allocates nothing.
+    /// Adds −∂e/∂x and −∂e/∂θ to the force, and returns the energy per area, in E_b h. Called at every step, so it should not
+    /// allocate.
     fn add_force(&self, at: At<'_>, force: &mut Force) -> f64;
 
-    /// Adds a positive semidefinite part of ∂²e/∂x² (Gauss–Newton). The integrator keeps its order with any matrix; a good one lets it take long steps.
+    /// Adds a positive semidefinite part of ∂²e/∂x² (Gauss–Newton). The integrator keeps its order with any matrix; a good one
+    /// allows long steps.
     fn add_stiffness(&self, at: At<'_>, stiffness: &mut Stiffness);
 
-    /// Adds the energy per area and length at each vertex, which sums with the vertices' shares of arclength to the energy; asked of
-    /// elastic terms only.
+    /// Adds the energy per area and length at each vertex, in E_b: summed with the arclengths of the vertices it gives the
+    /// energy. Called for elastic terms only.
     fn add_density(&self, at: At<'_>, density: &mut [f64]);
 }

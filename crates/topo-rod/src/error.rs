@@ -3,7 +3,7 @@
 use thiserror::Error;
 use topo_core::{CurveError, FileError, InvalidValue};
 
-/// A rod, its parameters or its protocol cannot be built as asked.
+/// A rod, its parameters or its protocol is invalid.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum RodError {
@@ -18,9 +18,9 @@ pub enum RodError {
         "the centreline touches itself (thickness {thickness:.1e} of {length:.4} in length): no rod can follow it, use a curve whose strands are apart"
     )]
     TouchesItself {
-        /// Thickness of the curve, in its own unit.
+        /// Thickness of the curve, in the unit of the curve.
         thickness: f64,
-        /// Its length.
+        /// Its length, in the unit of the curve.
         length: f64,
     },
     /// A disturbed start curve is not near the undisturbed one.
@@ -36,7 +36,7 @@ pub enum RodError {
     /// Fewer edges than a rod needs.
     #[error("a rod of {n_edges} edges cannot be modelled: use at least {least} edges")]
     TooFewEdges {
-        /// Edges asked for.
+        /// Edges requested.
         n_edges: usize,
         /// The least number accepted.
         least: usize,
@@ -44,12 +44,12 @@ pub enum RodError {
     /// The operation needs the other kind of rod.
     #[error("{operation} needs {needed} rod")]
     WrongTopology {
-        /// What was asked.
+        /// The operation.
         operation: &'static str,
         /// "a closed" or "an open".
         needed: &'static str,
     },
-    /// An end condition contradicts another, or the rod would be pushed without hold.
+    /// An end condition contradicts another, or nothing would balance the forces on the rod.
     #[error("the ends are not held consistently: {reason}")]
     Ends {
         /// What is inconsistent, and what would be right.
@@ -63,7 +63,7 @@ pub enum RodError {
         /// The vertex where two edges are opposite.
         vertex: usize,
     },
-    /// An energy term of the caller's own cannot stand beside the others.
+    /// An energy term of the caller has a name that cannot be used.
     #[error("the energy term \"{name}\" cannot be added: {reason}")]
     Term {
         /// Its name.
@@ -80,7 +80,7 @@ pub enum RodError {
     /// The cut is outside of the rod.
     #[error("cut at s/L = {at} is not on the rod: use a number in [0, 1)")]
     CutSite {
-        /// Position asked for.
+        /// Position requested, s/L.
         at: f64,
     },
 }

@@ -5,26 +5,29 @@ use crate::contact::ActivePair;
 /// Friction between strands closer than a range: a dissipative matrix C on the velocities, the same for the three components.
 ///
 /// ```math
-/// f_i = −(η_f/η) Σ_j w_i w_j W (v_i − v_j)/r_ij³   for r_ij < range
+/// f_i = -\frac{\eta_f}{\eta} \sum_{j:\ r_{ij} < \text{range}} w_i w_j\, W(|s_i - s_j|)\, \frac{v_i - v_j}{r_{ij}^3}
 /// ```
 ///
-/// The integral of the published law with the sign that takes energy out (its printed sign would pump energy in).
+/// This is the integral of the published law, with the sign that dissipates energy; the printed sign would add energy.
 ///
 /// # Validation
 /// `val_friction_of_two_sliding_rods_matches_the_integral`, `law_friction_never_adds_energy`.
 ///
 /// # References
-/// `patil2020discharging`, `patil2020topological`.
+/// [patil2020discharging], [patil2020topological].
+///
+/// [patil2020discharging]: https://doi.org/10.1103/PhysRevResearch.2.043196
+/// [patil2020topological]: https://doi.org/10.1126/science.aaz0135
 #[derive(Debug, Clone, Copy)]
 pub struct Friction {
     /// η_f/η: no unit.
     pub ratio: f64,
-    /// Distance below which strands rub, in h.
+    /// Distance below which friction acts, in h.
     pub range: f64,
 }
 
 impl Friction {
-    /// Coefficient of a pair: −C_ij.
+    /// Coefficient −C_ij of a pair, in 1/h.
     #[inline]
     pub fn coefficient(&self, pair: &ActivePair) -> f64 {
         if pair.distance < self.range {
@@ -34,7 +37,7 @@ impl Friction {
         }
     }
 
-    /// The pairs that rub, with their coefficients.
+    /// The pairs on which friction acts, with their coefficients.
     pub fn couplings(&self, active: &[ActivePair], out: &mut Vec<(u32, u32, f64)>) {
         out.clear();
         out.extend(
@@ -46,7 +49,7 @@ impl Friction {
     }
 }
 
-/// u·C v of two component-major displacements or velocities of `n` vertices; v·C v is the power that friction takes out.
+/// u·C v of two component-major displacements or velocities of `n` vertices; v·C v is the power that friction dissipates.
 pub fn friction_form(couplings: &[(u32, u32, f64)], u: &[f64], v: &[f64], n: usize) -> f64 {
     couplings
         .iter()

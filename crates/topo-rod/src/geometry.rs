@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use crate::RodState;
 
-/// Edges shorter than this share of their natural length have no direction that rounding would not turn.
+/// Edges shorter than this share of their natural length have no reliable direction: rounding would turn it.
 const COLLAPSED: f64 = 1e-3;
 
 /// Geometry of one state: what bend, twist, stretch and twist viscosity share.
@@ -16,7 +16,7 @@ pub struct Geometry {
     pub tangent: Vec<Vector3<f64>>,
     /// c_i = t_{i−1}·t_i of each interior vertex (1 at free ends).
     pub cosine: Vec<f64>,
-    /// Curvature binormal kb_i = 2 t_{i−1} × t_i/(1 + c_i), |kb| = 2 tan(φ/2) (0 at free ends).
+    /// Curvature binormal kb_i = 2 t_{i−1} × t_i/(1 + c_i), |kb| = 2 tan(φ/2): no unit (0 at free ends).
     pub binormal: Vec<Vector3<f64>>,
 }
 

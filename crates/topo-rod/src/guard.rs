@@ -8,7 +8,7 @@ use crate::RodState;
 use crate::contact::ContactPairs;
 use crate::contact::segment_distance;
 
-/// Limits on one step; each rejects with its own name.
+/// Limits on one step; each refuses with a name of its own.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Guards {
     /// Largest displacement of a vertex, in h.
@@ -32,11 +32,11 @@ impl Default for Guards {
     }
 }
 
-/// What a run may still gain in energy by errors of its steps.
+/// How much energy a run may still gain by errors of its steps.
 ///
 /// A single step may gain little, and never more than a tenth of what the whole run has left: the sum cannot reach the limit,
-/// however many steps there are. A gradient flow descends along any step that is short enough, so a refused one is only
-/// retried shorter.
+/// however many steps there are. The energy of a gradient flow falls in any step that is short enough, so a refused step is
+/// repeated with a shorter one.
 #[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
 pub(crate) struct RiseBudget {
     /// Energy that the limits are relative to.
@@ -85,7 +85,7 @@ impl RiseBudget {
             .max(ROUNDING * self.scale)
     }
 
-    /// Books the rise of an accepted step.
+    /// Records the rise of an accepted step.
     pub(crate) fn book(&mut self, rise: f64) {
         self.risen += rise.max(0.0);
     }
@@ -108,8 +108,8 @@ pub(crate) fn largest_displacement(step: &[f64], n: usize) -> (usize, f64) {
 ///
 /// Along the straight path from one state to the next, a point of edge i moves relative to a point of edge j by at most the
 /// largest relative displacement of their end points. If that stays below the distance of the two edges at the start, they
-/// cannot meet. Pairs far apart are proved by the displacement limit; all others, also those inside of the contact window,
-/// are measured.
+/// cannot meet. Pairs far apart are proved by the displacement limit; all others, also those inside the contact window, are
+/// measured.
 ///
 /// # Errors
 /// [`Rejection::Crossing`] names the first pair of edges that is not proved apart.

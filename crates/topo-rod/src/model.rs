@@ -132,7 +132,7 @@ fn marked(n: usize, places: impl Iterator<Item = usize>) -> Vec<bool> {
 }
 
 impl RodModel {
-    /// A model for `state`, with just what `parameters` name.
+    /// A model for `state`, with only the terms that `parameters` name.
     ///
     /// # Errors
     /// A parameter out of range, or end conditions on a closed rod.
@@ -213,7 +213,7 @@ impl RodModel {
         })
     }
 
-    /// The model with one more term, of the caller's own, last in the account: before it is [started](Self::start).
+    /// The model with one more term, supplied by the caller, last in the account. Call it before [`start`](Self::start).
     ///
     /// # Errors
     /// A name that is no column of a table, or that another part of the energy account has.
@@ -388,7 +388,7 @@ impl Model for RodModel {
         Ok(())
     }
 
-    /// Largest component of the displacement error in h; rotations count with the arc they move the surface by.
+    /// Largest component of the displacement error in h; rotations count by the arc through which they move the surface.
     fn error_norm(&self, error: &[f64]) -> f64 {
         let (moved, turned) = error.split_at(3 * self.n_vertices);
         topo_core::max_norm(moved).max(ROTATION_WEIGHT * topo_core::max_norm(turned))

@@ -39,7 +39,7 @@ pub(crate) struct NewtonMemory {
     n_factorisations: u64,
 }
 
-/// A matrix of an earlier state that still serves.
+/// A matrix of an earlier state that can still be used.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(crate) struct FactorMemory {
     values: Vec<f64>,
@@ -204,7 +204,7 @@ impl NewtonMatrix {
         solver.factor()
     }
 
-    /// Makes a new pattern where the one at hand does not serve.
+    /// Makes a new pattern where the present one cannot be used.
     fn keep_pattern(
         &mut self,
         state: &RodState,

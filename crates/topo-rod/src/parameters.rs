@@ -1,5 +1,6 @@
-//! What a scene says of a rod: material, twist, contact, friction, the reading of L/h, and the accuracy asked for.
+//! The parameters of a rod in a scene: material, twist, contact, friction, the reading of L/h, and the accuracy.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use topo_core::{finite, in_range, positive};
 
@@ -7,9 +8,9 @@ use crate::RodError;
 
 /// How L/h = 50 is read for a knot whose ropelength is not 50.
 ///
-/// The ropelengths of the knots to seven crossings run from 32.7 to 65.7 radii, so one slenderness cannot be literal for
-/// all: either the tube, the length or the material must give.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+/// The ropelengths of the knots to seven crossings run from 32.7 to 65.7 radii, so one slenderness cannot be literal for all:
+/// either the tube, the length or the material must differ from the nominal one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Reading {
     /// L as given; the contact diameter shrinks to fit, the friction range stays 2h.
@@ -38,21 +39,22 @@ impl Reading {
 /// Lengths of a rod once the reading has been applied, in units of h.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Tube {
-    /// Natural length L of the rod.
+    /// Natural length L of the rod, in h.
     pub length: f64,
-    /// Distance d_c below which two strands repel.
+    /// Distance d_c below which two strands repel each other, in h.
     pub contact_diameter: f64,
-    /// Distance below which two strands rub.
+    /// Distance below which friction acts between two strands, in h.
     pub friction_range: f64,
-    /// Length of the start curve (longer than `length` when the rod starts stretched).
+    /// Length of the start curve, in h (longer than `length` when the rod starts stretched).
     pub start_length: f64,
 }
 
 /// Contact between strands: the stiffness k_c of the penalty, in units of E_b/h³ per area and length squared.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct ContactParameters {
-    /// Stiffness k_c.
+    /// Stiffness k_c, in E_b/h³.
+    #[schemars(range(min = 1e-6, max = 1e9), extend("x-unit" = "E_b/h³"), example = 50.0)]
     pub stiffness: f64,
 }
 
@@ -62,8 +64,8 @@ impl Default for ContactParameters {
     }
 }
 
-/// Where friction reaches.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+/// The range of friction.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum FrictionRange {
     /// As the reading says: 2h, or the contact diameter for `tight`.
@@ -72,16 +74,20 @@ pub enum FrictionRange {
     /// The contact diameter d_c.
     Contact,
     /// A multiple of the contact diameter.
-    TimesContact(f64),
+    TimesContact(
+        #[schemars(range(min = 1e-3, max = 10), extend("x-unit" = "d_c"), example = 1.1)] f64,
+    ),
 }
 
 /// Friction between strands.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct FrictionParameters {
-    /// η_f/η.
+    /// η_f/η: no unit.
+    #[schemars(range(min = 0, max = 1e6), extend("x-unit" = "1"), example = 0.2)]
     pub ratio: f64,
-    /// Where it reaches.
+    /// Its range.
+    #[schemars(example = FrictionRange::Contact)]
     pub range: FrictionRange,
 }
 
@@ -97,19 +103,19 @@ impl Default for FrictionParameters {
 /// Material, load and resolution of one rod.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RodParameters {
-    /// L/h.
+    /// Slenderness L/h: no unit.
     pub slenderness: f64,
-    /// How that is read.
+    /// How the slenderness is read.
     pub reading: Reading,
     /// Number of edges N.
     pub n_edges: usize,
-    /// Ratio α of twist to bending stiffness, 1/(1 + Poisson's ratio).
+    /// Ratio α of twist to bending stiffness, 1/(1 + Poisson's ratio): no unit.
     pub twist_ratio: f64,
-    /// Stretch stiffness γ = E/E_b.
+    /// Ratio γ = E/E_b of stretching to bending modulus: no unit.
     pub stretch_ratio: f64,
     /// Twist density θ'h tied in before the ends are fused; `None`: no twist is modelled at all.
     pub twist: Option<f64>,
-    /// `None`: strands pass through each other (only the certificate notices).
+    /// `None`: strands pass through each other (only the crossing check notices).
     pub contact: Option<ContactParameters>,
     /// `None`: no friction is modelled.
     pub friction: Option<FrictionParameters>,
@@ -191,7 +197,7 @@ impl RodParameters {
 }
 
 /// Which integrator of `topo-core` advances the rod.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum IntegratorKind {
     /// Linearly implicit, four stages, order 3.
@@ -203,21 +209,21 @@ pub enum IntegratorKind {
     Rkc2,
 }
 
-/// The trade between speed and accuracy, in numbers.
+/// Settings that decide on speed and accuracy.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Accuracy {
-    /// Local error aimed at, in h.
+    /// Target of the local error of a step, in h.
     pub tolerance: f64,
     /// Coefficient g of ROS2-W (1 + 1/√2 for loose, 1 − 1/√2 for tight tolerances).
     pub gamma: f64,
     /// Which integrator.
     pub integrator: IntegratorKind,
-    /// Steps that one factorised Newton matrix may serve; the order holds for any matrix.
+    /// Number of steps for which one factorised Newton matrix is used; the order holds for any matrix.
     pub reuse: usize,
     /// Width of the Verlet skin, in h.
     pub skin: f64,
-    /// Most steps of a phase before the run stops with that reason.
+    /// Limit of steps in a phase; the run stops there and reports it.
     pub max_steps: u64,
 }
 

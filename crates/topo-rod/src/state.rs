@@ -64,11 +64,13 @@ impl Chain {
 
 /// A discrete rod: vertices x_i and the integrated twist m_i of each interior vertex.
 ///
-/// An isotropic rod needs no stored frames: twist changes by the exact spherical area that the tangents sweep.
-/// Closed rods have N vertices and N twists; open rods N + 1 vertices and N − 1 twists (those of the ends are kept at 0).
+/// An isotropic rod needs no stored frames: the twist changes by the area that the tangents sweep on the unit sphere. Closed
+/// rods have N vertices and N twists; open rods N + 1 vertices and N − 1 twists (those of the ends are kept at 0).
 ///
 /// # References
-/// The discrete rod of `bergou2008`, with the twist per vertex as the variable.
+/// The discrete rod of [bergou2008], with the twist per vertex as the variable.
+///
+/// [bergou2008]: https://doi.org/10.1145/1360612.1360662
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct RodState {
     vertices: Vec<Vector3<f64>>,
@@ -86,7 +88,8 @@ impl std::ops::Deref for RodState {
 }
 
 impl RodState {
-    /// A rod on `centreline` whose edges have the same natural length l0 = `length`/N and a uniform twist density.
+    /// A rod on `centreline` whose N edges have the same natural length l_0 = `length`/N (in h) and the uniform `twist_density`
+    /// θ' (in radians per h).
     ///
     /// # Errors
     /// Too few edges, or a fold of a half turn.
@@ -166,7 +169,7 @@ impl RodState {
         Ok(Polyline::new(self.vertices.clone(), self.chain.closed)?)
     }
 
-    /// Distance of the two ends (0 while closed).
+    /// Distance between the two ends, in h (0 while closed).
     pub fn end_to_end(&self) -> f64 {
         if self.chain.closed {
             0.0
@@ -243,8 +246,11 @@ impl RodState {
     /// the unit sphere, which keeps Tw + Wr of a closed rod to rounding:
     ///
     /// ```math
-    /// m_i ← m_i + δθ_i − δθ_{i−1} + Ω(a, b, b') + Ω(a, b', a'),   Ω = 2 atan2(a·(b×c), 1 + a·b + b·c + c·a)
+    /// m_i \leftarrow m_i + \delta\theta_i - \delta\theta_{i-1} + \Omega(a, b, b') + \Omega(a, b', a'), \qquad
+    /// \tan \frac{\Omega(a, b, c)}{2} = \frac{a \cdot (b \times c)}{1 + a \cdot b + b \cdot c + c \cdot a}
     /// ```
+    ///
+    /// where a and b are the tangents before and after the vertex, a' and b' those after the step.
     pub(crate) fn moved_by(&self, step: &[f64], with_twist: bool, stamp: u64, to: &mut RodState) {
         let n = self.vertices.len();
         to.chain = self.chain;

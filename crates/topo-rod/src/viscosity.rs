@@ -1,7 +1,7 @@
 //! Internal viscosity: what resists motion of the centreline and rotation of the edges.
 //!
-//! The damping is internal, so a translation costs nothing: one vertex is grounded, which for a balanced force is the exact
-//! solution with that vertex at rest, and the mean velocity is then removed.
+//! The damping is internal, so it does not resist a translation: one vertex is grounded, which for a balanced force is the
+//! exact solution with that vertex at rest, and the mean velocity is then removed.
 
 use serde::{Deserialize, Serialize};
 use topo_sparse::{SparseCholesky, SparseError};
@@ -10,9 +10,13 @@ use crate::contact::{ContactPairs, KnownPairs};
 use crate::friction::Friction;
 use crate::{Chain, RodState};
 
-/// Mobility of the centreline: solves [η K + η_f C] v = f for the three components at once.
+/// Mobility of the centreline: turns forces f into velocities v, the three components at once.
 ///
-/// K is the stiffness matrix of −d²/ds² on the natural arclength, v·K v = Σ_j |v_{j+1} − v_j|²/l_0.
+/// ```math
+/// (\eta K + \eta_f C)\, v = f, \qquad v \cdot K v = \sum_j \frac{|v_{j+1} - v_j|^2}{l_0}
+/// ```
+///
+/// K is the stiffness matrix of −d²/ds² on the natural arclength, C the matrix of the [friction](crate::friction::Friction).
 #[derive(Debug)]
 pub struct CentrelineViscosity {
     solver: Option<SparseCholesky>,
@@ -38,7 +42,7 @@ pub(crate) struct MobilityMemory {
 }
 
 impl CentrelineViscosity {
-    /// What it remembers: without friction its matrix is constant, with friction it is made anew at every state.
+    /// What it remembers: without friction its matrix is constant, with friction it is assembled at every state.
     pub(crate) fn memory(&self) -> MobilityMemory {
         MobilityMemory {
             pairs: self.pairs.clone(),
@@ -107,7 +111,7 @@ impl CentrelineViscosity {
         self.n_patterns
     }
 
-    /// Finds a pattern of entries, unless that at hand serves.
+    /// Finds a pattern of entries, unless the present one can be used.
     fn keep_pattern(
         &mut self,
         state: &RodState,
@@ -125,6 +129,9 @@ impl CentrelineViscosity {
     }
 
     /// Assembles and factorises the matrix at a state. Without friction it is constant and factorised once.
+    ///
+    /// # Errors
+    /// [`SparseError`] when the matrix cannot be factorised.
     pub fn prepare(
         &mut self,
         state: &RodState,
@@ -278,7 +285,7 @@ pub fn centreline_form(chain: Chain, u: &[f64], v: &[f64]) -> f64 {
 /// u·M_θ w of edge rotations, with c_i the cosine of the turning angle at vertex i.
 ///
 /// ```math
-/// w·M_θ w = (η/2l_0) Σ_i |w_i t_i − w_{i−1} t_{i−1}|²
+/// w \cdot M_\theta w = \frac{\eta}{2 l_0} \sum_i |w_i t_i - w_{i-1} t_{i-1}|^2
 /// ```
 pub fn twist_form(chain: Chain, cosine: impl Fn(usize) -> f64, u: &[f64], w: &[f64]) -> f64 {
     let sum: f64 = chain
@@ -349,6 +356,9 @@ impl TwistViscosity {
     }
 
     /// Assembles and factorises M_θ + `stiffness` Σ_i (w_i − w_{i−1})².
+    ///
+    /// # Errors
+    /// [`SparseError`] when the matrix cannot be factorised.
     pub fn prepare(
         &mut self,
         chain: Chain,

@@ -1,4 +1,4 @@
-//! Why a matrix was refused, naming the culprit and the remedy.
+//! Why a matrix was refused, with the cause and the remedy.
 
 /// Why a sparse matrix could not be set up or factorised.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -7,7 +7,7 @@ pub enum SparseError {
     /// The matrix has no rows, or more than 32-bit indices can count.
     #[error("a matrix of {n} rows cannot be factorised: expected 1 to 2^31 - 2 rows")]
     Size {
-        /// How many rows were asked for.
+        /// How many rows were requested.
         n: usize,
     },
     /// The pattern names an entry outside the matrix.
@@ -48,7 +48,7 @@ pub enum SparseError {
         /// Column, in the caller's numbering.
         column: usize,
     },
-    /// Memory for the factor could not be had.
+    /// There is not enough memory for the factor.
     #[error("not enough memory for the factor of a matrix of {n} rows: use fewer unknowns")]
     OutOfMemory {
         /// Rows of the matrix.

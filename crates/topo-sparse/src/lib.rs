@@ -1,6 +1,6 @@
 //! Sparse Cholesky factorisation with a fixed pattern: the one file that names faer.
 //!
-//! A crate of its own, so that only what factorises waits for faer to be compiled.
+//! A separate crate, so that only crates that factorise wait for faer to be compiled.
 
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::linalg::cholesky::llt::factor::LltError as PivotError;
@@ -21,8 +21,8 @@ mod error;
 mod pattern;
 mod substitute;
 
-/// Where supernodes win, measured on contact graphs of knots with one and three unknowns a vertex: faer's own choice, made for
-/// large matrices, comes too late for these.
+/// Where supernodes win, measured on contact graphs of knots with one and three unknowns per vertex: faer's own choice, made
+/// for large matrices, comes too late for these.
 const DENSE_ENOUGH: SupernodalThreshold = SupernodalThreshold(0.4);
 
 /// Factor L L^T of a symmetric positive definite matrix whose pattern never changes.
@@ -31,11 +31,10 @@ const DENSE_ENOUGH: SupernodalThreshold = SupernodalThreshold(0.4);
 /// P A P^T = L L^T
 /// ```
 ///
-/// The ordering P and the pattern of L are found once; [`factor`](Self::factor) and
-/// [`solve_in_place`](Self::solve_in_place) then allocate nothing. Values are kept in the order of P, so that a
-/// refactorisation permutes nothing either: write them through the indices that [`slot`](Self::slot) hands out, once, at set-up.
-/// Entries of the pattern may be zero, so one pattern serves as long as a contact list lives. Everything runs on the calling
-/// thread: at these sizes a second thread only costs.
+/// The ordering P and the pattern of L are found once; [`factor`](Self::factor) and [`solve_in_place`](Self::solve_in_place)
+/// then allocate nothing. Values are kept in the order of P, so that a new factorisation permutes nothing: look up their
+/// indices with [`slot`](Self::slot) once at set-up. Entries of the pattern may be zero, so one pattern serves as long as a
+/// contact list is valid. Everything runs on the calling thread: at these sizes a second thread makes it slower.
 ///
 /// # Validation
 /// `solves_what_it_multiplies`, `refuses_what_is_not_positive_definite`
@@ -64,7 +63,7 @@ pub struct SparseCholesky {
 }
 
 impl SparseCholesky {
-    /// Sets up a matrix of `n` rows whose entries may differ from zero at `pattern` (either triangle, duplicates welcome) and
+    /// Sets up a matrix of `n` rows whose entries may differ from zero at `pattern` (either triangle, duplicates allowed) and
     /// on the diagonal; ordered by approximate minimum degree.
     ///
     /// # Errors
@@ -86,7 +85,7 @@ impl SparseCholesky {
     }
 
     /// As [`new`](Self::new) for `n_blocks` square blocks of `size` rows: `pattern` names pairs of blocks, which are ordered as
-    /// units. That takes a fraction of the time and keeps blocks dense in the factor.
+    /// units. This takes a fraction of the time and keeps blocks dense in the factor.
     ///
     /// # Errors
     /// As [`new`](Self::new).
@@ -436,7 +435,7 @@ fn check_size(n: usize, pattern: &[(u32, u32)]) -> Result<(), SparseError> {
     }
 }
 
-/// One triangle of a symmetric pattern with its diagonal, as faer wants it.
+/// One triangle of a symmetric pattern with its diagonal, as faer expects it.
 fn compressed(
     n: usize,
     entries: impl Iterator<Item = (u32, u32)> + Clone,

@@ -20,9 +20,10 @@ pub const SEND: &str = "parent.postMessage(JSON.stringify(report), '*');";
 impl Browser {
     /// The browser of this machine; panics where there is none.
     pub fn start() -> Self {
-        let needs = Outside::Browser.needs();
         Self {
-            program: Outside::Browser.find().expect(needs),
+            program: Outside::Browser
+                .find()
+                .unwrap_or_else(|| panic!("{}", Outside::Browser.needs())),
             folder: tempfile::tempdir().unwrap(),
         }
     }

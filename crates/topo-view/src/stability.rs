@@ -232,28 +232,61 @@ pub fn report(quality: Preset, maps: &[(&str, Vec<StabilityRow>)]) -> String {
     text
 }
 
-/// Reasons that differ in their numbers only, each once, with the numbers of its first run and how many runs it stopped.
+/// Reasons that differ in their numbers only, each once, with how many runs it stopped and the numbers of all of them.
 fn reasons(rows: &[&StabilityRow]) -> String {
     let kind = |reason: &str| -> Vec<String> {
         let words = reason.split_whitespace();
         let words = words.filter(|w| !w.contains(|c: char| c.is_ascii_digit()));
         words.map(str::to_owned).collect()
     };
-    let mut counts: Vec<(Vec<String>, &str, usize)> = Vec::new();
+    let mut kinds: Vec<(Vec<String>, Vec<&str>)> = Vec::new();
     for row in rows.iter().filter(|r| !r.has_converged()) {
         let kind = kind(&row.reason);
-        match counts.iter_mut().find(|(k, ..)| *k == kind) {
-            Some((.., n)) => *n += 1,
-            None => counts.push((kind, &row.reason, 1)),
+        match kinds.iter_mut().find(|(k, _)| *k == kind) {
+            Some((_, reasons)) => reasons.push(&row.reason),
+            None => kinds.push((kind, vec![&row.reason])),
         }
     }
-    counts.sort_by_key(|(.., n)| std::cmp::Reverse(*n));
-    let all = counts.iter().map(|(_, reason, n)| match n {
-        1 => format!("{reason} (1)"),
-        n => format!("such as {reason} ({n})"),
+    kinds.sort_by_key(|(_, reasons)| std::cmp::Reverse(reasons.len()));
+    let all = kinds.iter().map(|(_, reasons)| {
+        let one = spread(reasons).unwrap_or_else(|| format!("such as {}", reasons[0]));
+        format!("{one} ({})", reasons.len())
     });
     let all: Vec<String> = all.collect();
     all.join("; ").replace('|', "/")
+}
+
+/// Reasons that differ in their numbers as one, from the least of each number to the largest; none where they differ otherwise.
+fn spread(reasons: &[&str]) -> Option<String> {
+    let words = reasons
+        .iter()
+        .map(|reason| reason.split_whitespace().collect());
+    let words: Vec<Vec<&str>> = words.collect();
+    let n = words.first()?.len();
+    if words.iter().any(|w| w.len() != n) {
+        return None;
+    }
+    let bare = |word: &'_ str| {
+        word.trim_matches(|c: char| !c.is_alphanumeric() && c != '-')
+            .to_owned()
+    };
+    let one = |k: usize| -> Option<String> {
+        let first = words[0][k];
+        if words.iter().all(|w| w[k] == first) {
+            return Some(first.to_owned());
+        }
+        let numbers = words
+            .iter()
+            .map(|w| Some((bare(w[k]).parse::<f64>().ok()?, bare(w[k]))));
+        let mut numbers: Vec<(f64, String)> = numbers.collect::<Option<_>>()?;
+        numbers.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let [(_, least), .., (_, most)] = &numbers[..] else {
+            return None;
+        };
+        Some(first.replace(&bare(first), &format!("{least} to {most}")))
+    };
+    let all: Option<Vec<String>> = (0..n).map(one).collect();
+    Some(all?.join(" "))
 }
 
 #[cfg(test)]
@@ -291,12 +324,34 @@ mod tests {
         let report = report(Preset::Draft, &[("rod", rows.clone())]);
         // reasons of one kind are one, and keep their numbers
         assert!(
-            report.contains("such as step 3e-9 too small (2)"),
+            report.contains("step 3e-9 to 4e-9 too small (2)"),
             "{report}"
         );
-        assert!(!report.contains("4e-9 too small (1)"), "{report}");
+        assert!(!report.contains("too small (1)"), "{report}");
         assert!(report.contains("1 of 2"), "{report}");
         let picture = draw(&rows).unwrap();
         assert!(picture.svg.contains("twist") && !picture.png.is_empty());
+    }
+
+    #[test]
+    fn reasons_of_one_kind_keep_the_spread_of_their_numbers() {
+        for (reasons, one) in [
+            (
+                vec!["a spacing of 3 is too coarse for cores of size 0.998: use at most 2.5"],
+                Some("a spacing of 3 is too coarse for cores of size 0.998: use at most 2.5"),
+            ),
+            (
+                vec![
+                    "a gap of 4.5 (at -2)",
+                    "a gap of 12 (at -7)",
+                    "a gap of 7 (at -2)",
+                ],
+                Some("a gap of 4.5 to 12 (at -7 to -2)"),
+            ),
+            (vec!["found t^2", "found t^3"], None),
+            (vec!["edges 1 2", "edges 1"], None),
+        ] {
+            assert_eq!(spread(&reasons).as_deref(), one, "{reasons:?}");
+        }
     }
 }

@@ -1,4 +1,4 @@
-//! Made-up results in the layout of real ones, for the tests of drawing only.
+//! Artificial results in the layout of real ones, for the tests of drawing only.
 
 mod nematic;
 

@@ -1,7 +1,7 @@
 //! `cargo xtask ci`: what must pass before a change lands.
 
 use super::cargo::{cargo, step, target};
-use super::{dependencies, packages, test};
+use super::{dependencies, packages, rustdoc, test};
 use topo_cli::CliError;
 use topo_cli::{note, say};
 
@@ -26,9 +26,8 @@ pub fn run() -> Result<(), CliError> {
         "warnings",
     ];
     check("clippy", cargo(&lint))?;
-    let mut docs = cargo(&["doc", "--release", "--workspace", "--no-deps", "--quiet"]);
-    docs.env("RUSTDOCFLAGS", "-D warnings");
-    check("doc", docs)?;
+    check("doc", rustdoc::command())?;
+    rustdoc::place_katex(&target())?;
     check(
         "package",
         cargo(&["package", "--workspace", "--no-verify", "--quiet"]),

@@ -1,9 +1,10 @@
 //! `cargo xtask determinism`: the same numbers from one thread, from two, and from runs killed at random moments.
 
 use crate::cli::DeterminismArgs;
+use crate::workspace::at;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 use topo_cli::CliError;
@@ -130,17 +131,10 @@ fn torn(
     Ok(n_kills)
 }
 
-fn at(path: &Path) -> impl Fn(std::io::Error) -> CliError {
-    let path: PathBuf = path.to_owned();
-    move |source| CliError::File {
-        path: path.clone(),
-        source,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::path::PathBuf;
 
     #[test]
     fn the_whole_is_computed_and_nothing_drawn() {

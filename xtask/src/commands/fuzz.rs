@@ -1,4 +1,4 @@
-//! `cargo xtask fuzz`: every parser fed with made-up files, and a table of how long and with what outcome.
+//! `cargo xtask fuzz`: every parser fed with generated files, and a table of how long and with what outcome.
 
 use super::cargo::{cargo, step};
 use super::record::record;

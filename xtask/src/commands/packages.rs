@@ -1,8 +1,8 @@
 //! Whether all crates build from their packages alone, as a stranger gets them.
 
 use super::cargo::cargo;
-use crate::workspace::workspace;
-use std::path::{Path, PathBuf};
+use crate::workspace::{at, workspace};
+use std::path::Path;
 use std::process::Command;
 use topo_cli::CliError;
 
@@ -49,12 +49,4 @@ fn names() -> Result<Vec<String>, CliError> {
     }
     names.sort();
     Ok(names)
-}
-
-fn at(path: &Path) -> impl Fn(std::io::Error) -> CliError {
-    let path: PathBuf = path.to_owned();
-    move |source| CliError::File {
-        path: path.clone(),
-        source,
-    }
 }

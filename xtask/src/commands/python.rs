@@ -2,7 +2,7 @@
 
 use super::cargo::step;
 use super::test::Counts;
-use crate::workspace::workspace;
+use crate::workspace::{at, workspace};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use topo_cli::CliError;
@@ -11,7 +11,7 @@ use topo_cli::CliError;
 const CRATE: &str = "crates/topo-py";
 /// What the tests need besides numpy; notebooks and pictures are tested where their packages are there.
 const NEEDED: &str = "import maturin, pytest, numpy";
-/// What a reader without it is told.
+/// What is said where it is missing.
 const NEEDS: &str = "needs Python with maturin, pytest and numpy (the one that TOPO_PYTHON names)";
 
 /// The Python that `TOPO_PYTHON` names, if it has these modules.
@@ -131,14 +131,6 @@ fn n_tests(folder: &Path) -> Result<usize, CliError> {
         }
     }
     Ok(n)
-}
-
-fn at(path: &Path) -> impl Fn(std::io::Error) -> CliError {
-    let path = path.to_owned();
-    move |source| CliError::File {
-        path: path.clone(),
-        source,
-    }
 }
 
 #[cfg(test)]

@@ -32,6 +32,13 @@ pub fn record_part(page: &str, part: &str, table: &str) -> Result<(), CliError> 
     Ok(data::write(&path, text.as_bytes())?)
 }
 
+/// A named part of a page.
+#[cfg(test)]
+pub fn part<'a>(page: &'a str, name: &str) -> Option<&'a str> {
+    let [begin, end] = marks(name);
+    Some(page.split_once(&begin)?.1.split_once(&end)?.0)
+}
+
 fn replaced(page: &str, part: &str, table: &str) -> Option<String> {
     let [begin, end] = marks(part);
     let (before, rest) = page.split_once(&begin)?;

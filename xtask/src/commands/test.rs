@@ -285,7 +285,7 @@ mod tests {
     }
 
     #[test]
-    fn tests_left_out_are_told_at_the_end() {
+    fn tests_left_out_are_reported_at_the_end() {
         let line = "test export::tests::python_reads ... ignored, needs Python";
         assert_eq!(ignored_test(line), Some("python_reads"));
         assert_eq!(ignored_test("test long_one ... ignored"), Some("long_one"));

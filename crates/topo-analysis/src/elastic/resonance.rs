@@ -1,4 +1,4 @@
-//! What a table of discharges says: regimes, near-tie ensembles, and knots that are slow.
+//! Results of a table of discharges: regimes, ensembles of nearly equal cuts, and slow knots.
 
 use std::collections::BTreeMap;
 
@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::table::SweepRow;
 use crate::statistics::{Spread, median};
 
-/// Which part of the energy leads.
+/// Which part of the energy is larger after charging.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Regime {
@@ -51,7 +51,7 @@ pub fn crossover(rows: &[SweepRow], knot: &str, sign: f64) -> Option<f64> {
 pub struct Ensemble {
     /// Knot type.
     pub knot: String,
-    /// θ'h.
+    /// Twist density θ'h.
     pub twist: f64,
     /// t50, t90, t95 and t99 over the cuts, in T_0.
     pub times: [Option<Spread>; 4],
@@ -81,7 +81,7 @@ pub fn ensembles(rows: &[SweepRow]) -> Vec<Ensemble> {
 pub struct Resonance {
     /// Knot type.
     pub knot: String,
-    /// θ'h.
+    /// Twist density θ'h.
     pub twist: f64,
     /// Its mean t99 over the median of the means of all knots.
     pub ratio: f64,
@@ -91,8 +91,8 @@ pub struct Resonance {
 
 /// Knots whose mean t99 exceeds `factor` times the median over the knots at the same twist, slowest first.
 ///
-/// `others` are tables of the same knots under another reading or friction range: the reading mixes knot type with friction,
-/// so only what is slow in all of them is called robust.
+/// `others` are tables of the same knots under another reading or friction range: the reading mixes knot type with friction, so
+/// only a knot that is slow in all of them is called robust.
 pub fn resonances(rows: &[SweepRow], factor: f64, others: &[&[SweepRow]]) -> Vec<Resonance> {
     let slow = |rows: &[SweepRow]| -> Vec<Resonance> {
         let all = ensembles(rows);

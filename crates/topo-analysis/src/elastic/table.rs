@@ -11,24 +11,24 @@ pub struct SweepRow {
     pub case: String,
     /// Knot type.
     pub knot: String,
-    /// θ'h tied in before the ends were fused.
+    /// Twist density θ'h tied in before the ends were fused.
     pub twist: f64,
-    /// Place of the cut, s/L.
+    /// Position of the cut, s/L.
     pub cut: f64,
     /// Reading of the slenderness.
     pub reading: String,
     /// Edges of the rod.
     pub edges: usize,
-    /// L/h.
+    /// Slenderness L/h.
     #[serde(default)]
     pub slenderness: f64,
-    /// Ratio α of twist to bending stiffness.
+    /// Ratio α of twist to bending stiffness: no unit.
     #[serde(default)]
     pub twist_ratio: f64,
     /// Stretch stiffness γ = E/E_b.
     #[serde(default)]
     pub stretch_ratio: f64,
-    /// Stiffness k_c of the contact; empty without contact.
+    /// Stiffness k_c of the contact, in E_b/h³; empty without contact.
     #[serde(default)]
     pub contact_stiffness: Option<f64>,
     /// η_f/η; empty without friction.
@@ -43,29 +43,29 @@ pub struct SweepRow {
     /// Its seed, and that of the closures.
     #[serde(default)]
     pub seed: u64,
-    /// Local error aimed at, in h.
+    /// Target of the local error, in h.
     #[serde(default)]
     pub tolerance: f64,
-    /// Elastic energy after charging.
+    /// Elastic energy after charging, in E_0.
     pub energy: f64,
-    /// Its bending part.
+    /// Its bending part, in E_0.
     pub bend: f64,
-    /// Its twist part.
+    /// Its twist part, in E_0.
     pub twist_energy: f64,
-    /// Its stretch part.
+    /// Its stretch part, in E_0.
     pub stretch: f64,
-    /// Energies of further terms after charging, a column of its name each; not read back from tables.
+    /// Energies of further terms after charging, in E_0, one column of that name each; not read back from tables.
     #[serde(default, skip_serializing_if = "Further::is_empty")]
     pub further: Further,
-    /// Elastic energy that the image of an amphichiral knot which was not kept has after charging; empty where only one was
-    /// charged, and in tables written before there was this column.
+    /// Elastic energy after charging, in E_0, of the mirror image that was not kept, for an amphichiral knot; empty where only
+    /// one image was charged, and in older tables without this column.
     #[serde(default)]
     pub energy_other_image: Option<f64>,
-    /// Writhe after charging.
+    /// Writhe after charging: no unit.
     pub writhe: f64,
     /// Total twist after charging, in turns.
     pub total_twist: f64,
-    /// Time at which half of the elastic energy before the cut was released; 0 if the cut itself did.
+    /// Time at which half of the elastic energy before the cut was released, in T_0; 0 if the cut itself released it.
     pub t50: Option<f64>,
     /// Same for 90 %.
     pub t90: Option<f64>,
@@ -73,7 +73,7 @@ pub struct SweepRow {
     pub t95: Option<f64>,
     /// Same for 99 %.
     pub t99: Option<f64>,
-    /// Time at which half of the elastic energy that the cut left was released.
+    /// Time at which half of the elastic energy left by the cut was released, in T_0.
     pub t50_after_cut: Option<f64>,
     /// Same for 90 %.
     pub t90_after_cut: Option<f64>,
@@ -81,7 +81,7 @@ pub struct SweepRow {
     pub t95_after_cut: Option<f64>,
     /// Same for 99 %.
     pub t99_after_cut: Option<f64>,
-    /// Time of the last change of the knot type to the unknot; empty if not seen.
+    /// Time of the last change of the knot type to the unknot, in T_0; empty if not seen.
     pub t_untie: Option<f64>,
     /// Largest |Δ(Tw + Wr)| while closed, in turns.
     pub link_drift: Option<f64>,
@@ -91,7 +91,7 @@ pub struct SweepRow {
     pub steps: u64,
     /// Refused steps of charge and discharge.
     pub rejected: u64,
-    /// Processor seconds of this discharge and its share of the charge.
+    /// Processor time of this discharge and its share of the charge, in seconds.
     pub cpu_seconds: f64,
     /// What is doubtful about it.
     pub warnings: Warnings,

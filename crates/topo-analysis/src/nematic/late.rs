@@ -2,10 +2,11 @@
 
 use topo_core::DischargeCurve;
 
-/// The rate is read off while the energy falls by this factor to its last value.
+/// The rate is fitted while the energy falls by this factor to its last value.
 const WINDOW: f64 = 2.0;
 
-/// Rate −d ln(F − F_final)/dt at the end of a curve, F_final being `end`, by least squares over the steps in which F halved last; `None` with fewer than three.
+/// Rate −d ln(F − F_final)/dt at the end of a curve, in the inverse unit of its times, with F_final = `end`, by least squares
+/// over the steps in which F − F_final halved last; `None` with fewer than three steps.
 ///
 /// A tilt of the director by the slowest mode between plates a distance L_z apart decays so that F ∝ exp(−2 π² Γ L t/L_z²).
 ///

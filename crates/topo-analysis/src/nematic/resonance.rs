@@ -1,10 +1,10 @@
-//! What a sweep over q says: where the ring buckles, and which q discharges fastest at the end.
+//! Results of a sweep over q: where the ring buckles, and which q discharges fastest at the end.
 
 use serde::{Deserialize, Serialize};
 
 use super::table::NematicRow;
 
-/// Smallest q with a buckled ring, of rows that differ in q only.
+/// Smallest q with a buckled ring, of rows that differ only in q.
 pub fn buckling(rows: &[NematicRow]) -> Option<u32> {
     rows.iter().filter(|r| r.is_buckled()).map(|r| r.q).min()
 }
@@ -19,7 +19,7 @@ pub fn resonance_peak(
         .max_by(|a, b| a.1.total_cmp(&b.1))
 }
 
-/// The resonance of a sweep over q.
+/// The resonance in a sweep over q.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct NematicResonance {
     /// Smallest q with a buckled ring.
@@ -36,7 +36,7 @@ pub struct NematicResonance {
     pub collapse: Option<f64>,
 }
 
-/// What rows that differ in q only say together.
+/// The result of rows that differ only in q.
 pub fn nematic_resonance(rows: &[NematicRow]) -> NematicResonance {
     let mut rows: Vec<NematicRow> = rows.to_vec();
     rows.sort_by_key(|r| r.q);

@@ -42,9 +42,9 @@ impl fmt::Display for Flow {
 pub struct NematicRow {
     /// Folder of the case.
     pub case: String,
-    /// Radius of the particle.
+    /// Radius of the particle, in ξ_N.
     pub radius: f64,
-    /// Edge of a cell.
+    /// Grid spacing, in ξ_N.
     pub spacing: f64,
     /// Winding of the anchoring.
     pub q: u32,
@@ -60,13 +60,13 @@ pub struct NematicRow {
     /// How strongly: strong, free, or the strength W in L/ξ_N.
     #[serde(default)]
     pub anchoring: String,
-    /// Edge of the cell along x.
+    /// Length of the box along x, in ξ_N.
     #[serde(default)]
     pub cell_x: f64,
-    /// Same along y.
+    /// Length along y, in ξ_N.
     #[serde(default)]
     pub cell_y: f64,
-    /// Same along z, the distance of the plates.
+    /// Length along z, the distance between the plates, in ξ_N.
     #[serde(default)]
     pub cell_z: f64,
     /// A, in L/ξ_N².
@@ -78,50 +78,50 @@ pub struct NematicRow {
     /// C, in L/ξ_N².
     #[serde(default)]
     pub c: f64,
-    /// Elastic constant L; one, unless the scene says otherwise.
+    /// Elastic constant L: 1 in reduced units.
     #[serde(default)]
     pub elastic_constant: f64,
-    /// Second elastic constant L_2; empty where none is modelled.
+    /// Second elastic constant L_2, in L; empty where none is modelled.
     #[serde(default)]
     pub second_elastic_constant: Option<f64>,
-    /// Rotational mobility Γ; one, unless the scene says otherwise.
+    /// Rotational mobility Γ: 1 in reduced units.
     #[serde(default)]
     pub rotational_mobility: f64,
-    /// Flow alignment χ.
+    /// Flow alignment χ: no unit.
     #[serde(default)]
     pub flow_alignment: f64,
     /// Isotropic viscosity η, in 1/Γ.
     #[serde(default)]
     pub viscosity: f64,
-    /// Order S at surfaces; empty: that of equilibrium.
+    /// Order S at surfaces: no unit; empty for that of equilibrium.
     #[serde(default)]
     pub surface_order: Option<f64>,
-    /// Anisotropy of the external field; empty where none is modelled.
+    /// Anisotropy of the external field: no unit; empty where none is modelled.
     #[serde(default)]
     pub field_anisotropy: Option<f64>,
-    /// Local error aimed at.
+    /// Target of the local error: no unit.
     #[serde(default)]
     pub tolerance: f64,
-    /// Free energy after charging.
+    /// Free energy after charging, in L ξ_N.
     pub f_charged: f64,
-    /// Free energy just after the switch.
+    /// Free energy just after the switch, in L ξ_N.
     pub f_after_switch: f64,
-    /// Free energy of the state of equilibrium after the switch: shares count down to it.
+    /// Free energy of the state of equilibrium after the switch, in L ξ_N: shares count down to it.
     pub f_final: f64,
-    /// Size of the horizontal order parameter after charging, zero below the buckling.
+    /// Size of the horizontal order parameter after charging: no unit; zero below the buckling transition.
     pub order_parameter: f64,
     /// Lowest eigenvalue of the Hessian of the energy at the charged state, in L/ξ_N²: a small change along its mode decays at Γ
     /// times this.
     pub lowest_eigenvalue: Option<f64>,
-    /// What it says of the charged state: minimum, saddle or marginal.
+    /// What the eigenvalue means for the charged state: minimum, saddle or marginal.
     pub state: Option<MinimumState>,
-    /// Mean distance of the ring from the axis.
+    /// Mean distance of the ring from the axis, in ξ_N.
     pub ring_radius: Option<f64>,
     /// Undulations of the ring's height: the strongest mode.
     pub ring_mode: Option<u32>,
-    /// Amplitude of that mode.
+    /// Amplitude of that mode, in ξ_N.
     pub ring_amplitude: Option<f64>,
-    /// Time at which half of the energy after the switch was released.
+    /// Time at which half of the energy after the switch was released, in τ_N.
     pub t50: Option<f64>,
     /// Same for 90 %.
     pub t90: Option<f64>,
@@ -129,7 +129,7 @@ pub struct NematicRow {
     pub t99: Option<f64>,
     /// Same for 99.9 %.
     pub t999: Option<f64>,
-    /// Time at which half of the charged energy was released, the switch included.
+    /// Time at which half of the charged energy was released, the switch included, in τ_N.
     pub t50_charged: Option<f64>,
     /// Same for 90 %.
     pub t90_charged: Option<f64>,
@@ -147,7 +147,7 @@ pub struct NematicRow {
     pub stokes_updates: u64,
     /// Iterations of the particle's constraint in all of them.
     pub stokes_iterations: u64,
-    /// Processor seconds, charge and discharge.
+    /// Processor time of charge and discharge, in seconds.
     pub cpu_seconds: f64,
     /// Largest number of bytes held by fields, lists and solvers.
     pub peak_bytes: u64,
@@ -191,21 +191,21 @@ impl NematicRow {
 /// The battery at one time of its discharge: lengths in ξ_N, energies in L ξ_N, times in τ_N = ξ_N²/(Γ L), L the elastic constant.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct NematicSample {
-    /// Time since the switch.
+    /// Time since the switch, in τ_N.
     pub time: f64,
-    /// Free energy.
+    /// Free energy, in L ξ_N.
     pub energy: f64,
-    /// Energy dissipated by reorientation since the switch.
+    /// Energy dissipated by reorientation since the switch, in L ξ_N.
     pub dissipated_rotation: f64,
-    /// Energy dissipated by flow since the switch.
+    /// Energy dissipated by flow since the switch, in L ξ_N.
     pub dissipated_flow: f64,
-    /// Horizontal order parameter, x.
+    /// Horizontal order parameter along x: no unit.
     pub order_x: f64,
-    /// Horizontal order parameter, y.
+    /// Horizontal order parameter along y: no unit.
     pub order_y: f64,
-    /// Size of the mean horizontal director, the director taken upwards.
+    /// Size of the mean horizontal director, with the director taken upwards: no unit.
     pub tilt: f64,
-    /// Mean distance of the ring from the axis, while there is one.
+    /// Mean distance of the ring from the axis, in ξ_N; empty without a ring.
     pub ring_radius: Option<f64>,
     /// Largest speed, in ξ_N/τ_N, with flow.
     pub max_speed: Option<f64>,
@@ -220,17 +220,17 @@ pub struct NematicSample {
 /// A point of a defect line, in ξ_N from the particle's centre; times in τ_N.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct LinePoint {
-    /// Time since the switch; empty for the charged state.
+    /// Time since the switch, in τ_N; empty for the charged state.
     pub time: Option<f64>,
     /// Which line.
     pub line: usize,
-    /// Whether it closes on itself.
+    /// Whether it is closed.
     pub closed: bool,
-    /// Place.
+    /// Coordinate x, in ξ_N.
     pub x: f64,
-    /// Place.
+    /// Coordinate y, in ξ_N.
     pub y: f64,
-    /// Place.
+    /// Coordinate z, in ξ_N.
     pub z: f64,
     /// Angle between the rotation axis of the director around the line and the line, in degrees: 0 is a +1/2 profile, 90 a
     /// twisted one, 180 a −1/2 profile; empty where it is unclear.
@@ -240,19 +240,19 @@ pub struct LinePoint {
 /// A point of the vertical plane through the particle's centre, in ξ_N from it; times in τ_N.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct SlicePoint {
-    /// Time since the switch; empty for the charged state.
+    /// Time since the switch, in τ_N; empty for the charged state.
     pub time: Option<f64>,
-    /// Place across.
+    /// Horizontal position, in ξ_N.
     pub x: f64,
-    /// Place upwards.
+    /// Vertical position, in ξ_N.
     pub z: f64,
-    /// Degree of order S.
+    /// Order S: no unit.
     pub order: f64,
-    /// Director.
+    /// Component x of the unit director.
     pub nx: f64,
-    /// Director.
+    /// Component y of the unit director.
     pub ny: f64,
-    /// Director.
+    /// Component z of the unit director.
     pub nz: f64,
     /// Velocity, in ξ_N/τ_N, with flow.
     pub ux: Option<f64>,

@@ -97,7 +97,7 @@ pub struct TightenArgs {
     /// Number of threads; all processors when left out.
     #[arg(long, value_name = "N", value_parser = count::from(1, count::MOST_JOBS))]
     pub jobs: Option<usize>,
-    /// Compute everything anew.
+    /// Compute everything again.
     #[arg(long)]
     pub fresh: bool,
 }

@@ -1,27 +1,31 @@
 //! `topo compare DIR DIR`: whether two results folders hold the same numbers, to the byte.
 
 use crate::cli::CompareArgs;
+use crate::duration::count;
 use crate::error::CliError;
 use crate::output;
+use crate::progress::waiting;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use topo_view::ViewError;
 
-/// Columns and keys that tell how long or how much, not what came out.
+/// Columns and keys of times and memory, not of results.
 pub const DROPPED: [&str; 3] = ["cpu_seconds", "peak_bytes", "timings"];
 /// Files about the making of the results, and pictures of them.
 const SKIPPED: [&str; 2] = ["provenance.json", "index.html"];
 /// Most differences listed one by one.
-const TOLD: usize = 20;
+const LISTED: usize = 20;
 
 pub(super) fn run(args: &CompareArgs) -> Result<(), CliError> {
-    let differences = differences(&args.first, &args.second, &DROPPED)?;
+    let differences = waiting("comparing", || {
+        differences(&args.first, &args.second, &DROPPED)
+    })?;
     output::data("differences", &differences);
-    for line in differences.iter().take(TOLD) {
+    for line in differences.iter().take(LISTED) {
         say!("{line}");
     }
-    if differences.len() > TOLD {
-        say!("and {} more", differences.len() - TOLD);
+    if differences.len() > LISTED {
+        say!("and {} more", differences.len() - LISTED);
     }
     if differences.is_empty() {
         say!(
@@ -32,10 +36,9 @@ pub(super) fn run(args: &CompareArgs) -> Result<(), CliError> {
         );
         Ok(())
     } else {
-        Err(CliError::Step(format!(
-            "{} files differ",
-            differences.len()
-        )))
+        let n = differences.len();
+        let verb = if n == 1 { "differs" } else { "differ" };
+        Err(CliError::Step(format!("{} {verb}", count(n, "file"))))
     }
 }
 

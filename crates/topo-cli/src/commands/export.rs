@@ -2,8 +2,10 @@
 
 use crate::batteries::Batteries;
 use crate::cli::{ExportArgs, ExportFormat};
+use crate::duration::count;
 use crate::error::CliError;
 use crate::output;
+use crate::progress::waiting;
 use topo_view::export::{self, Wanted};
 
 /// Writes the files of a case of one of the batteries.
@@ -24,13 +26,16 @@ pub fn run(args: &ExportArgs, batteries: &Batteries<'_>) -> Result<(), CliError>
         nemaktis: any(&[ExportFormat::Nemaktis]).then_some(args.micrometres),
     };
     let folder = args.to.clone().unwrap_or_else(|| args.case.join("export"));
-    let made = export::write(&args.case, &folder, &wanted, batteries)?;
+    let made = waiting("writing", || {
+        export::write(&args.case, &folder, &wanted, batteries)
+    })?;
     output::out(&folder);
     output::data("files", &made.files);
     for note in &made.notes {
         output::warning(note);
         say!("note: {note}");
     }
-    say!("{} files written to {}", made.files.len(), folder.display());
+    let n = count(made.files.len(), "file");
+    say!("{n} written to {}", folder.display());
     Ok(())
 }

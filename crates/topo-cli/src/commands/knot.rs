@@ -9,7 +9,7 @@ mod tighten;
 use crate::cli::{KnotArgs, KnotCommand};
 use crate::error::CliError;
 use crate::output;
-use print::print;
+pub(super) use print::print;
 use std::process::ExitCode;
 use topo_knots::KnotTable;
 

@@ -1,7 +1,7 @@
 //! What a command will take, said before the work, and what it took.
 
 use super::order::{Order, more_knots};
-use crate::duration::duration;
+use crate::duration::{count, duration};
 use crate::error::CliError;
 use indicatif::DecimalBytes;
 use topo_knots::TightenSettings;
@@ -98,8 +98,8 @@ fn drawing_factor(quality: Preset) -> f64 {
     }
 }
 
-/// Tells the estimate of a command on the terminal.
-pub fn tell(stages: &[Stage]) {
+/// Prints the estimate of a command on the terminal.
+pub fn print(stages: &[Stage]) {
     if let [only] = stages {
         note!("estimate: {}", text("case", &only.estimate));
         return;
@@ -120,12 +120,11 @@ pub fn together(stages: &[Stage]) -> Option<Estimate> {
 
 /// The estimate of so many parts in words.
 fn text(part: &str, e: &Estimate) -> String {
-    let plural = if e.n_cases == 1 { "" } else { "s" };
     let mut text = format!(
-        "{} {part}{plural}, {} on {} threads ({} of one processor)",
-        e.n_cases,
+        "{}, {} on {} ({} of one processor)",
+        count(e.n_cases, part),
         duration(e.wall_seconds),
-        e.threads,
+        count(e.threads, "thread"),
         duration(e.cpu_seconds),
     );
     if e.bytes > 0 {
@@ -133,8 +132,8 @@ fn text(part: &str, e: &Estimate) -> String {
     }
     if e.n_calibrated > 0 {
         text += &format!(
-            "; speed of this machine from {} finished cases",
-            e.n_calibrated
+            "; speed of this machine from {}",
+            count(e.n_calibrated, "finished case")
         );
     }
     text
@@ -147,7 +146,7 @@ mod tests {
     use topo_lab::{Rods, Sweep};
 
     #[test]
-    fn estimates_are_told_in_fitting_units() {
+    fn estimates_are_given_in_fitting_units() {
         let mut e = Estimate {
             n_cases: 238,
             cpu_seconds: 202.0,
@@ -187,7 +186,7 @@ mod tests {
     }
 
     #[test]
-    fn a_scene_is_told_with_its_tight_shapes() {
+    fn a_scene_is_estimated_with_its_tight_shapes() {
         let folder = tempfile::tempdir().unwrap();
         let settings = SweepSettings {
             jobs: 1,

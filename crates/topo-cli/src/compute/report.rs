@@ -1,6 +1,6 @@
 //! What a sweep says on the terminal while it runs and when it is done.
 
-use crate::duration::duration;
+use crate::duration::{count, duration};
 use crate::error::CliError;
 use crate::output;
 use crate::progress::Progress;
@@ -8,13 +8,12 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 use topo_lab::{Estimate, Event, FailedCase};
 
-/// Tells what they took.
-pub fn tell_taken(estimate: &Estimate, seconds: f64) {
+/// Says what they took.
+pub fn print_taken(estimate: &Estimate, seconds: f64) {
     if estimate.n_cases > 0 {
         say!(
-            "{} case{} in {}; estimated {}",
-            estimate.n_cases,
-            if estimate.n_cases == 1 { "" } else { "s" },
+            "{} in {}; estimated {}",
+            count(estimate.n_cases, "case"),
             duration(seconds),
             duration(estimate.wall_seconds)
         );
@@ -47,7 +46,7 @@ impl Reporter {
                 _,
             ) => {
                 if n_reused > 0 {
-                    note!("{n_reused} of {n_cases} cases are finished already");
+                    note!("{n_reused} of {} finished already", count(n_cases, "case"));
                 }
                 self.progress
                     .get_or_init(|| Progress::expecting(self.label, n_cases - n_reused, estimate));

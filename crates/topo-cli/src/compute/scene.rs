@@ -2,12 +2,13 @@
 
 use std::path::Path;
 
-use super::report::{Failures, Reporter, tell_taken};
+use super::report::{Failures, Reporter, print_taken};
 use super::{by_goal, estimate};
 use crate::batteries::Batteries;
 use crate::error::CliError;
 use crate::output;
-use topo_lab::{Options, Sweep, SweepSettings, Swept, read_scene};
+use crate::progress::waiting;
+use topo_lab::{LabError, Options, Sweep, SweepSettings, Swept, read_scene};
 
 /// Runs a user's scene and prints its table; `options` stand above what the file says.
 pub fn scene(
@@ -16,14 +17,16 @@ pub fn scene(
     options: &Options<'_>,
     settings: &SweepSettings,
 ) -> Result<(), CliError> {
+    let placed = |e: LabError| e.in_file(file);
     let mut scene = read_scene(batteries, file)?;
     scene.change(options)?;
     let mut experiment = scene.experiment()?;
-    let choice = experiment.choose(settings.jobs)?;
+    let choice = experiment.choose(settings.jobs).map_err(placed)?;
     if let Some(choice) = &choice {
         by_goal::report_choice(choice);
     }
-    estimate::tell(&experiment.stages(settings)?);
+    let stages = waiting("estimating the work", || experiment.stages(settings));
+    estimate::print(&stages.map_err(placed)?);
     let folder = experiment.results(&settings.out);
     let swept = sweep(&*experiment, settings)?;
     let mut failures = Failures::default();
@@ -37,7 +40,7 @@ pub fn scene(
     for line in swept.lines() {
         say!("{line}");
     }
-    tell_taken(swept.estimate(), swept.wall_seconds());
+    print_taken(swept.estimate(), swept.wall_seconds());
     if let Some(choice) = &choice {
         let reporter = Reporter::new(experiment.label());
         let checked = swept.check(choice, settings, &|event| reporter.report(event))?;

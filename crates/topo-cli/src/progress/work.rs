@@ -113,7 +113,7 @@ mod tests {
     }
 
     #[test]
-    fn no_time_left_is_told_where_none_is_known() {
+    fn no_time_left_is_reported_where_none_is_known() {
         let unknown = Estimate::default();
         assert_eq!(work(9, &unknown, &[]).left(100.0), None);
         assert_eq!(work(2, &unknown, &[0.0, 0.0]).left(100.0), None);

@@ -10,7 +10,7 @@ type V = Vector3<f64>;
 
 /// A chain of straight edges in space; a closed one has an edge from its last vertex to its first.
 ///
-/// Made only by checked constructors: vertices are finite and successive ones differ (also across the seam), so that every
+/// Only checked constructors make one: vertices are finite and successive ones differ (also across the seam), so that every
 /// edge has a length above zero and a direction. Lengths are in the caller's unit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Unchecked")]
@@ -69,7 +69,7 @@ impl Polyline {
         &self.vertices
     }
 
-    /// The vertices, given away.
+    /// The vertices, by value.
     pub fn into_vertices(self) -> Vec<V> {
         self.vertices
     }
@@ -123,7 +123,7 @@ impl Polyline {
         self.vertices.iter().map(|v| v / n).sum()
     }
 
-    /// The mirror image in the plane z = 0: lengths and angles to the bit, the writhe with the other sign.
+    /// The mirror image in the plane z = 0. Lengths and angles stay the same to the bit, the writhe changes its sign.
     pub fn mirrored(&self) -> Self {
         Self {
             vertices: self

@@ -9,7 +9,7 @@ use crate::integrate::max_norm;
 
 type V = Vector3<f64>;
 
-/// Equal means: within this relative spread, or the resampling is refused.
+/// Edges count as equal within this relative spread; otherwise the resampling is refused.
 const SPREAD_LIMIT: f64 = 1e-9;
 /// Where iterating stops gaining anything.
 const SPREAD_TARGET: f64 = 1e-13;
@@ -19,10 +19,10 @@ const MAX_NEWTON: usize = 30;
 impl Polyline {
     /// The polyline after `n_passes` of the binomial filter (1/4, 1/2, 1/4); ends of an open one stay.
     ///
-    /// A pass multiplies the mode of k vertices a wave by cos^2(pi/k): zigzags die at once, long waves stay.
+    /// A pass multiplies a mode of k vertices per wavelength by cos²(π/k): zigzags vanish at once, long waves stay.
     ///
     /// # Errors
-    /// [`CurveError::CoincidentVertices`] when smoothing collapses an edge (as of a pure zigzag).
+    /// [`CurveError::CoincidentVertices`] when smoothing collapses an edge, for example of a pure zigzag.
     ///
     /// # Validation
     /// `smoothing_damps_a_mode_by_its_factor`
@@ -48,7 +48,7 @@ impl Polyline {
     ///
     /// # Errors
     /// [`CurveError::TooFewVertices`] for fewer than 3 (closed) or 1 (open) edges; [`CurveError::UnequalEdges`] when edges
-    /// cannot be made equal to 1e-9, as when `n_edges` is too few to follow the curve.
+    /// cannot be made equal to 1e-9, for example when `n_edges` is too small to follow the curve.
     ///
     /// # Validation
     /// `edges_become_equal_and_keep_the_curve`

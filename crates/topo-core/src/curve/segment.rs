@@ -1,4 +1,4 @@
-//! Closest points of two segments, with relative tolerances so that edges of any length are served.
+//! Closest points of two segments, with relative tolerances, for edges of any length.
 
 use nalgebra::Vector3;
 
@@ -7,7 +7,9 @@ type V = Vector3<f64>;
 /// Squared distance of the segments a-b and c-d and the parameters of the closest points, each in [0, 1].
 ///
 /// # References
-/// `ericson2005`
+/// [ericson2005]
+///
+/// [ericson2005]: https://doi.org/10.1201/b14581
 pub fn closest_points(a: &V, b: &V, c: &V, d: &V) -> (f64, f64, f64) {
     let (u, v, w) = (b - a, d - c, a - c);
     let (uu, uv, vv) = (u.norm_squared(), u.dot(&v), v.norm_squared());

@@ -1,4 +1,4 @@
-//! Thickness of a polygon: the radius of the fattest tube around it.
+//! Thickness of a polygon: the radius of the thickest tube around it.
 
 use nalgebra::Vector3;
 
@@ -20,14 +20,16 @@ type V = Vector3<f64>;
 /// `pruned_thickness_is_brute_force`, `circle_is_bounded_by_its_radius`.
 ///
 /// # References
-/// `rawdon2003`
+/// [rawdon2003]
+///
+/// [rawdon2003]: https://eudml.org/doc/51725
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Thickness {
-    /// Smallest radius of curvature of the polygon.
+    /// Smallest radius of curvature of the polygon, minRad.
     pub min_rad: f64,
-    /// Smallest doubly critical self-distance.
+    /// Smallest doubly critical self-distance, dcsd.
     pub dcsd: f64,
-    /// Radius of the fattest tube, min(min_rad, dcsd / 2).
+    /// Radius of the thickest tube, min(min_rad, dcsd / 2).
     pub tau: f64,
 }
 
@@ -42,8 +44,8 @@ impl Thickness {
 }
 
 impl Polyline {
-    /// Length over thickness, in which a tube of the same shape is as long whatever its scale: 2π for a circle, 0 for a
-    /// straight line, which no tube is too fat for, and infinite for a polygon that touches itself.
+    /// Length over thickness, which does not depend on the scale: 2π for a circle, 0 for a straight line (of infinite
+    /// thickness), and infinite for a polygon that touches itself.
     ///
     /// # Validation
     /// `circle_is_bounded_by_its_radius`, `a_curve_that_crosses_itself_has_no_thickness`.
@@ -52,7 +54,7 @@ impl Polyline {
     }
 }
 
-/// Thickness of a polygon; pairs of edges that cannot beat the best pair so far are skipped.
+/// Thickness of a polygon; pairs of edges that cannot be closer than the best pair so far are skipped.
 pub fn thickness(curve: &Polyline) -> Thickness {
     Thickness::new(min_rad(curve), self_distance(curve, true))
 }
@@ -62,8 +64,8 @@ pub fn thickness_brute_force(curve: &Polyline) -> Thickness {
     Thickness::new(min_rad(curve), self_distance(curve, false))
 }
 
-/// Half the smallest distance between points at least pi `radius` apart along the curve, the other usual reading of
-/// the self-distance: it reaches `radius` exactly when a tube of that radius does not overlap itself.
+/// Half the smallest distance between points at least π `radius` apart along the curve, another usual definition of the
+/// self-distance: it reaches `radius` exactly when a tube of that radius does not overlap itself.
 pub fn windowed_half_distance(curve: &Polyline, radius: f64) -> f64 {
     let x = curve.vertices();
     let n = curve.n_edges();

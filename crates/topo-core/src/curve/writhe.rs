@@ -20,23 +20,27 @@ impl Polyline {
     }
 }
 
-/// Writhe of the polygon through `vertices`; for an open chain, the double integral over the chain itself.
+/// Writhe of the polygon through `vertices`: the Gauss integral of the curve with itself, for an open chain over the chain
+/// alone.
 ///
 /// ```math
 /// Wr = \frac{1}{4\pi} \iint \frac{(\mathrm{d}r_1 \times \mathrm{d}r_2) \cdot (r_1 - r_2)}{|r_1 - r_2|^3}
 ///    = \frac{1}{2\pi} \sum_{i<j} \Omega_{ij}
 /// ```
 ///
-/// The differences between two straight edges fill a flat parallelogram, and the pair's share is the solid angle under which
-/// the origin sees it. Cut along a diagonal, both triangles share one triple product, so that one arctangent a pair gives the
-/// exact value, without the cancellation that the four arcsines of the usual form suffer near coplanar pairs. Positive
-/// for right-handed crossings; a curve that passes through itself gets the share 0 at that pair (the mean of the two sides).
+/// Ω_ij is a signed solid angle: the differences between the points of two straight edges fill a flat parallelogram, and the
+/// origin sees it under Ω_ij. Cut along a diagonal, both triangles share one triple product, so that one arctangent per pair
+/// gives the exact value, without the cancellation that the four arcsines of the usual form suffer near coplanar pairs.
+/// Positive for right-handed crossings; a curve that passes through itself gets the share 0 at that pair (the mean of the two
+/// sides).
 ///
 /// # Validation
 /// `writhe_equals_the_gauss_integral`, `planar_curves_have_no_writhe`, `ideal_like_trefoil_is_right_handed`
 ///
 /// # References
-/// `banchoff1976`, `klenin2000`
+/// `banchoff1976`, [klenin2000]
+///
+/// [klenin2000]: https://doi.org/10.1002/1097-0282(20001015)54:5%3C307::AID-BIP20%3E3.0.CO;2-Y
 pub fn writhe(vertices: &[V], closed: bool) -> f64 {
     sum_over_pairs(vertices, closed, |half_angle| half_angle) / PI
 }
@@ -51,7 +55,9 @@ pub fn writhe(vertices: &[V], closed: bool) -> f64 {
 /// `crossing_number_of_two_views`
 ///
 /// # References
-/// `klenin2000`
+/// [klenin2000]
+///
+/// [klenin2000]: https://doi.org/10.1002/1097-0282(20001015)54:5%3C307::AID-BIP20%3E3.0.CO;2-Y
 pub fn average_crossing_number(vertices: &[V], closed: bool) -> f64 {
     sum_over_pairs(vertices, closed, f64::abs) / PI
 }

@@ -23,7 +23,7 @@ impl fmt::Display for Phase {
     }
 }
 
-/// How far a run is; what a phase does not know is absent. Times and energies are in the battery's own units.
+/// How far a run is; values that a phase does not have are absent. Times and energies are in the battery's own units.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Progress {
     /// The phase.
@@ -32,13 +32,13 @@ pub struct Progress {
     pub step: u64,
     /// Time reached in it; 0 where the phase has none.
     pub time: f64,
-    /// When it ends at the latest.
+    /// Time at which it ends at the latest, in the battery's unit.
     pub until: Option<f64>,
-    /// Share released of the energy whose release ends it.
+    /// Share of the energy that is released, for a phase that ends by it.
     pub released: Option<f64>,
-    /// Energy.
+    /// Energy, in the battery's unit.
     pub energy: Option<f64>,
-    /// Root mean square of the molecular field, of a nematic that relaxes.
+    /// Root mean square of the molecular field of a nematic that relaxes, in L/ξ_N².
     pub rms_field: Option<f64>,
 }
 

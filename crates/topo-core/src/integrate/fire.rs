@@ -20,15 +20,18 @@ const SHORTEST: f64 = 0.02;
 /// v \leftarrow (1 - a)(v + F\,\Delta t) + a\,|v + F\,\Delta t|\,F/|F|, \quad x \leftarrow x + v\,\Delta t
 /// ```
 ///
-/// The semi-implicit form with a half step back after an uphill one. Needs no Hessian and no line search. Masses are 1: scale the
-/// unknowns, or the forces, to equal stiffness. Three sums over all unknowns decide on a step, and the step is a combination of
-/// position, velocity and force: how they are stored, and which passes over memory compute them, is the model's own affair.
+/// F is the force, a the mixing. This is the semi-implicit form: after an uphill step half of it is taken back. It needs no Hessian and no line
+/// search. Masses are 1, so scale the unknowns or the forces to equal stiffness. Three sums over all unknowns decide on a step, and
+/// the step combines position, velocity and force. The model chooses how these are stored and computed.
 ///
 /// # Validation
 /// `finds_the_minimum_of_a_curved_valley`, `a_constant_force_is_free_fall_in_growing_steps`, `an_uphill_step_is_half_undone`
 ///
 /// # References
-/// `bitzek2006`, `guenole2020`
+/// [bitzek2006], [guenole2020]
+///
+/// [bitzek2006]: https://doi.org/10.1103/PhysRevLett.97.170201
+/// [guenole2020]: https://doi.org/10.1016/j.commatsci.2020.109584
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Fire {
     dt: f64,
@@ -40,7 +43,7 @@ pub struct Fire {
 /// Sums over all unknowns at the present positions, for [`Fire::step`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FireSums {
-    /// F · F; positive.
+    /// F · F, which is positive.
     pub force_squared: f64,
     /// F · v.
     pub power: f64,
@@ -48,27 +51,27 @@ pub struct FireSums {
     pub speed_squared: f64,
 }
 
-/// One step of [`Fire`], v' being the velocity after it.
+/// One step of [`Fire`], with v' the velocity after it.
 ///
 /// ```math
 /// v' = a_v v + a_F F, \qquad x' = x + b\,v + \Delta t\,v'
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FireStep {
-    /// b: 0, or a negative time that takes half of an uphill step back.
+    /// Factor b of the velocity: 0, or a negative time that takes half of an uphill step back.
     pub back: f64,
-    /// a_v.
+    /// Factor a_v of the velocity.
     pub on_velocity: f64,
-    /// a_F.
+    /// Factor a_F of the force: a time.
     pub on_force: f64,
-    /// Δt.
+    /// Time step Δt.
     pub forth: f64,
 }
 
 impl Fire {
     /// A relaxation that begins from rest, whose longest time step will be `longest`.
     ///
-    /// The scheme is stable below 2/ω, ω being the highest frequency of the unknowns.
+    /// The scheme is stable below 2/ω, where ω is the highest frequency of the unknowns. Times are in the model's unit.
     pub fn at_rest(longest: f64) -> Self {
         Self {
             dt: FIRST * longest,
@@ -118,7 +121,7 @@ impl Fire {
         self.n_steps
     }
 
-    /// Whether a relaxation can go on with it: one read from a file should be asked.
+    /// Whether a relaxation can continue with it. Check this for one that was read from a file.
     pub fn is_sound(&self) -> bool {
         self.dt.is_finite()
             && self.dt > 0.0

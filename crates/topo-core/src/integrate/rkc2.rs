@@ -7,22 +7,29 @@ use crate::control::Rejection;
 /// Damping of the stability polynomial, as a fraction of its argument's range.
 const DAMPING: f64 = 2.0 / 13.0;
 
-/// Stabilised explicit method of order 2 with as many stages as the stiffness asks for.
+/// Stabilised explicit method of order 2 with as many stages as the stiffness needs.
 ///
 /// ```math
 /// D_j = \mu_j D_{j-1} + \nu_j D_{j-2} + \Delta t\,(\tilde\mu_j F_{j-1} + \tilde\gamma_j F_0), \quad
 /// F_j = F(u_0 \oplus D_j), \quad \Delta t\,\rho \le \tfrac23 (s^2 - 1)(1 - \tfrac{2}{15}\varepsilon)
 /// ```
 ///
-/// The number s of stages grows as the square root of dt rho, so that it beats an explicit method by a factor of s at no
-/// linear algebra. Written in displacements D_j from the old state, stages can be reached by retractions. The local error is
-/// estimated by 0.8 (u0 - u1) + 0.4 dt (F0 + F1), of third order; F1 serves the next step.
+/// ε is the damping and ρ the spectral radius. The number s of stages grows as the square root of Δt ρ, where a plain explicit
+/// method needs steps in proportion to Δt ρ itself; no linear algebra is needed. The stages are displacements D_j from the old
+/// state, so a model can apply them as retractions. The local error is estimated to third order, and F_1 is reused by the next
+/// step:
+///
+/// ```math
+/// \mathrm{err} = \tfrac45 (u_0 - u_1) + \tfrac25\, \Delta t\, (F_0 + F_1)
+/// ```
 ///
 /// # Validation
 /// `order_two`, `stable_up_to_its_bound_and_not_beyond`, `error_estimate_follows_the_local_error`
 ///
 /// # References
-/// `sommeijer1998`
+/// [sommeijer1998]
+///
+/// [sommeijer1998]: https://doi.org/10.1016/S0377-0427(97)00219-7
 #[derive(Clone, Debug)]
 pub struct Rkc2 {
     max_stages: usize,
@@ -54,7 +61,7 @@ impl Default for Rkc2 {
 }
 
 impl Rkc2 {
-    /// The method with at most `max_stages` stages a step (2 to 10 000; 200 by default).
+    /// The method with at most `max_stages` stages per step (2 to 10 000; 200 by default).
     ///
     /// # Errors
     /// [`InvalidValue`] outside that range.
@@ -66,7 +73,7 @@ impl Rkc2 {
         })
     }
 
-    /// Limit of stages a step.
+    /// Limit of stages per step.
     pub fn max_stages(&self) -> usize {
         self.max_stages
     }
@@ -146,17 +153,17 @@ impl Chebyshev {
 /// Factors of one stage: displacements and rates (times the step) that make up the next displacement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rkc2Stage {
-    /// Of the last displacement, mu.
+    /// Factor μ of the last displacement.
     pub on_last: f64,
-    /// Of the one before, nu.
+    /// Factor ν of the displacement before that.
     pub on_before: f64,
-    /// Of the rate at the last one.
+    /// Factor of the step times the rate at the last displacement.
     pub on_rate: f64,
-    /// Of the rate at the start of the step.
+    /// Factor of the step times the rate at its start.
     pub on_start_rate: f64,
 }
 
-/// The coefficients of [`Rkc2`], stage by stage, for a model that fuses its rate with their use.
+/// The coefficients of [`Rkc2`], stage by stage, for a model that computes its rate and applies them in one pass.
 ///
 /// The displacement after the first stage is [`first`](Self::first) times the step times the rate; each further stage follows from
 /// [`next_stage`](Self::next_stage), n - 1 times. The error estimate is 0.4 dt (F_0 + F_1) - 0.8 (u_1 - u_0).

@@ -4,9 +4,9 @@ use super::{Counters, LinearlyImplicit, Stepper, StepperMemory, Trial};
 use crate::check::{InvalidValue, in_range};
 use crate::control::Rejection;
 
-/// 1 + 1/sqrt 2: ROS2-W is L-stable, the smoother and more robust choice at loose tolerances.
+/// 1 + 1/sqrt 2: ROS2-W is L-stable, the more robust choice at loose tolerances.
 pub const GAMMA_L_STABLE_LARGE: f64 = 1.0 + std::f64::consts::FRAC_1_SQRT_2;
-/// 1 - 1/sqrt 2: ROS2-W is L-stable, with a much smaller error constant; pays at tight tolerances.
+/// 1 - 1/sqrt 2: ROS2-W is L-stable, with a much smaller error constant; better at tight tolerances.
 pub const GAMMA_L_STABLE_SMALL: f64 = 1.0 - std::f64::consts::FRAC_1_SQRT_2;
 
 const MOST_STAGES: usize = 4;
@@ -31,16 +31,24 @@ struct Tableau {
 /// u_1 = u_0 \oplus \Delta t \sum_i m_i k_i, \quad W = 1 - \gamma\,\Delta t\, J
 /// ```
 ///
-/// The order holds for every J, so that a Gauss-Newton matrix, a split or an old one costs accuracy in the error constant only.
-/// The error is estimated by the distance dt sum e_i k_i to an embedded solution of one order less. F(u0) is computed once a
-/// state: a repeated step costs one factorisation, and a rate and a solve for each further stage.
+/// The order holds for every J: a Gauss-Newton matrix, a part of the Jacobian or an old one changes only the error constant.
+/// The error is estimated by the distance to an embedded solution of one order less,
+///
+/// ```math
+/// \mathrm{err} = \Delta t \sum_i e_i k_i
+/// ```
+///
+/// F(u_0) is computed once per state. A repeated step costs one factorisation, and a rate and a solve for each further stage.
 ///
 /// # Validation
 /// `the_order_with_the_exact_and_with_a_wrong_jacobian`, `order_conditions_hold`, `stiff_modes_die_in_one_step`,
 /// `error_estimate_bounds_the_local_error`
 ///
 /// # References
-/// `verwer1999`, `rang2005`
+/// [verwer1999], [rang2005]
+///
+/// [verwer1999]: https://doi.org/10.1137/S1064827597326651
+/// [rang2005]: https://doi.org/10.1007/s10543-005-0035-y
 #[derive(Clone, Debug)]
 pub struct RosenbrockW {
     tableau: Tableau,
@@ -103,7 +111,7 @@ impl RosenbrockW {
         self.stages = vec![vec![0.0; n]; self.tableau.n_stages];
     }
 
-    /// The parameter gamma.
+    /// The parameter γ.
     pub fn gamma(&self) -> f64 {
         self.tableau.gamma
     }
@@ -268,7 +276,9 @@ fn inverse_of_lower(lower: &[Row; MOST_STAGES]) -> [Row; MOST_STAGES] {
     inverse
 }
 
-/// Table of `rang2005`.
+/// Table of [rang2005].
+///
+/// [rang2005]: https://doi.org/10.1007/s10543-005-0035-y
 const ROS34PW2: Published = {
     const G: f64 = 4.358_665_215_084_59e-1;
     const B: Row = [

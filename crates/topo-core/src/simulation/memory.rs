@@ -1,4 +1,4 @@
-//! What a simulation must remember beside model and state, so that it goes on from a checkpoint to the same bits.
+//! What a simulation must remember beside model and state, so that it continues from a checkpoint to the same bits.
 
 use serde::{Deserialize, Serialize};
 
@@ -10,8 +10,8 @@ use crate::stepping::TimeStepping;
 
 /// Time, step control and the integrator's own memory, between two steps.
 ///
-/// Model and state are remembered by who owns them: a simulation of the remembered model and state, [resumed](Simulation::resumed)
-/// with this, takes the same steps as the one that was stopped.
+/// Their owner remembers model and state: a simulation of the remembered model and state, [resumed](Simulation::resumed) with
+/// this, takes the same steps as the one that was stopped.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SimulationMemory {
     pub(super) steps: TimeStepping,
@@ -61,7 +61,7 @@ impl<M: Model, S: Stepper<M>> Simulation<M, S> {
         }
     }
 
-    /// The same simulation gone on from what an earlier one remembered, whose model and state it was made of.
+    /// The same simulation, continued from what an earlier one with this model and state remembered.
     ///
     /// # Validation
     /// `a_resumed_simulation_takes_the_same_steps`

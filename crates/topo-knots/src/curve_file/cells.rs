@@ -117,7 +117,7 @@ fn spelt_otherwise(cell: &str) -> Result<f64, NumberFault> {
     })
 }
 
-/// Whether a cell stands for a missing number.
+/// Whether a cell means a missing number.
 pub(super) fn is_missing(cell: &str) -> bool {
     cell.is_empty()
         || cell

@@ -9,7 +9,7 @@ use crate::KnotError;
 
 /// Names of columns that are the same all along a curve at one time.
 const FRAMES: [&str; 6] = ["frame", "time", "step", "timestep", "snapshot", "cut"];
-/// Names of columns that tell the components of a link.
+/// Names of columns that mark the components of a link.
 const COMPONENTS: [&str; 12] = [
     "component",
     "line",
@@ -34,11 +34,11 @@ pub(super) struct Columns {
     pub n: usize,
     /// Where x, y and z are.
     pub xyz: [usize; 3],
-    /// Columns that tell frames.
+    /// Columns that mark frames.
     pub frames: Vec<usize>,
-    /// The column that tells components.
+    /// The column that marks components.
     pub component: Option<usize>,
-    /// The column that tells whether a component is closed.
+    /// The column that says whether a component is closed.
     pub closed: Option<usize>,
     /// The others, none of which moves a vertex.
     pub further: Vec<usize>,
@@ -49,7 +49,7 @@ pub(super) struct Columns {
 }
 
 impl Columns {
-    /// Takes columns for frames or components whose value is another in every row for what they are: parameters along the curve.
+    /// Treats columns for frames or components whose value changes in every row as what they are: parameters along the curve.
     pub(super) fn drop_parameters(&mut self, rows: &Rows) {
         let repeats = |column: usize| {
             rows.column(column)
@@ -65,7 +65,7 @@ impl Columns {
         self.further.sort_unstable();
     }
 
-    /// Refuses a further column that divides the rows into few blocks as a component would, under a name that does not tell.
+    /// Refuses a further column that divides the rows into few blocks, as a component would, if its name does not explain it.
     pub(super) fn refuse_hidden_components(
         &self,
         path: &Path,

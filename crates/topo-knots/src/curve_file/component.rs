@@ -2,7 +2,7 @@
 
 use crate::V;
 
-/// How many times the longest edge the gap between the ends may measure for a curve of which nothing says how to be closed.
+/// Largest gap between the ends, in longest edges, of a curve that counts as closed although the file does not say so.
 const LONGEST_CLOSING: f64 = 2.0;
 
 /// One component of a file: its vertices, and whether it is closed where the file says so.
@@ -10,7 +10,7 @@ const LONGEST_CLOSING: f64 = 2.0;
 pub struct CurveComponent {
     /// Vertices in order; a last one that repeats the first is left out and makes the component closed.
     pub vertices: Vec<V>,
-    /// Whether the curve is closed; `None` where the file does not tell.
+    /// Whether the curve is closed; `None` where the file does not say.
     pub closed: Option<bool>,
     /// Whether the file repeats the first vertex at the end.
     pub repeats_first: bool,
@@ -39,9 +39,10 @@ impl CurveComponent {
         }
     }
 
-    /// Whether the curve is closed: what the file tells, else whether its ends are no farther apart than twice the longest edge.
+    /// Whether the curve is closed: as the file says, else whether its ends are at most twice the longest edge apart.
     ///
-    /// The closing edge of a closed polygon is an edge as the others are; one that is longer than all of them by far was never there.
+    /// The closing edge of a closed polygon is about as long as the others. One that is much longer than all of them is no edge
+    /// of the curve.
     ///
     /// # Validation
     /// `far_ends_make_an_open_curve`.

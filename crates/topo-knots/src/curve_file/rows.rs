@@ -1,4 +1,4 @@
-//! The rows of a table, and what single columns tell before it is read.
+//! The rows of a table, and what single columns show before it is read.
 
 use std::collections::HashSet;
 
@@ -21,7 +21,8 @@ impl Line<'_> {
     }
 }
 
-/// Lines, of which those that are no break are rows. They are cut anew for each look, which is cheaper than to keep the cells.
+/// Lines, of which those that are no break are rows. They are split again for each use, which is cheaper than to keep the
+/// cells.
 pub(super) struct Rows<'a, 'b>(pub &'b [Line<'a>]);
 
 impl<'a> Rows<'a, '_> {
@@ -39,7 +40,7 @@ impl<'a> Rows<'a, '_> {
         })
     }
 
-    /// Whether a column counts the rows, one by one; it may start anew, as it does with the next component.
+    /// Whether a column counts the rows, one by one; it may start again, as it does with the next component.
     pub(super) fn counts(&self, column: usize) -> bool {
         let (mut n, mut start, mut last) = (0, 0_i64, 0_i64);
         for cell in self.column(column).filter(|cell| !is_missing(cell)) {

@@ -7,7 +7,7 @@ use super::fault::fault;
 use crate::KnotError;
 use strsim::levenshtein;
 
-/// Whether a path stands for the standard input.
+/// Whether a path means the standard input.
 pub(super) fn is_standard_input(path: &Path) -> bool {
     path == Path::new("-")
 }

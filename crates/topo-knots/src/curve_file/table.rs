@@ -52,9 +52,9 @@ struct Groups<'a> {
     columns: &'a Columns,
     label: Option<String>,
     frames: Vec<FrameOf>,
-    /// The cells that tell each frame.
+    /// The cells that mark each frame.
     keys: Vec<Vec<&'a str>>,
-    /// The cells that tell the components of the last frame.
+    /// The cells that mark the components of the last frame.
     names: Vec<&'a str>,
     /// Whether the next row starts a component.
     starts: bool,

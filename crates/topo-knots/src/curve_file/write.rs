@@ -8,7 +8,7 @@ use topo_core::{Polyline, write_atomic_bytes};
 use super::CurveFormat;
 use crate::KnotError;
 
-/// Writes a curve in the format that the extension of `path` stands for.
+/// Writes a curve in the format of the extension of `path`.
 ///
 /// # Errors
 /// [`KnotError::CurveFile`] for an unknown extension, [`KnotError::File`] if it cannot be written.

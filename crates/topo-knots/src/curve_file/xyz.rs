@@ -187,7 +187,7 @@ impl Block<'_> {
     }
 }
 
-/// The block of `n` rows whose count stands on line `at`, and where it ends.
+/// The block of `n` rows whose count is on line `at`, and where it ends.
 ///
 /// A title follows the count; files of KymoKnot have none, which shows where the rows are one too few with it.
 fn block<'a>(

@@ -120,7 +120,7 @@ fn all_types(table: &KnotTable) -> Vec<(KnotName, KnotEntry)> {
 
 /// 556 types. Without the Kauffman polynomial, fourteen sets of them look alike; with it, only the two hands of 10_71.
 #[test]
-fn all_types_to_ten_crossings_are_told_apart() {
+fn all_types_to_ten_crossings_are_distinguished() {
     let table = KnotTable::builtin();
     let mut blind: Vec<Vec<String>> = Vec::new();
     let all = all_types(&table);

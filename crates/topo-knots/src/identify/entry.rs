@@ -13,8 +13,8 @@ const LONGEST_START: usize = 4000;
 impl KnotEntry {
     /// An entry for the closure of a braid word.
     ///
-    /// A knot that is named for certain keeps its entry of the table, and the word becomes one more start; any other is called
-    /// `unnamed` and has the invariants of its own closure.
+    /// A knot whose name is certain gets its entry of the table, with the word as one more start. Any other knot is called
+    /// `unnamed` and has the invariants of the closure.
     ///
     /// # Errors
     /// As [`closed_braid`], and those of [`identify`](crate::identify).

@@ -21,7 +21,7 @@ pub enum Handedness {
     Mirrored,
     /// The knot equals its mirror image.
     Amphichiral,
-    /// The invariants at hand do not tell the knot from its mirror image.
+    /// The invariants do not distinguish the knot from its mirror image.
     Undecided,
 }
 
@@ -37,13 +37,13 @@ impl Handedness {
     }
 }
 
-/// Type of a closed curve as far as Alexander polynomial, determinant, signature, Jones and Kauffman polynomial tell.
+/// Type of a closed curve, as far as Alexander polynomial, determinant, signature, Jones and Kauffman polynomial determine it.
 ///
-/// These separate all knots of at most ten crossings, sums included, from each other and their mirror images, but for the hand of
-/// 10_71. Beyond, a name means that nothing contradicts it: see [`is_certain`](Self::is_certain).
+/// These separate all knots of at most ten crossings, sums included, from each other and from their mirror images; only the
+/// hand of 10_71 stays open. Beyond, a name means that nothing contradicts it: see [`is_certain`](Self::is_certain).
 ///
 /// # Validation
-/// `all_types_to_ten_crossings_are_told_apart`, `names_the_table_and_its_mirrors`.
+/// `all_types_to_ten_crossings_are_distinguished`, `names_the_table_and_its_mirrors`.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct KnotType {

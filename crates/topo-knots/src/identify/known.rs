@@ -13,7 +13,7 @@ pub(super) struct Candidate {
 }
 
 impl Candidate {
-    /// The name of the type or of its mirror image, whichever stands first.
+    /// The name of the type or of its mirror image, whichever comes first in the table.
     pub fn unsided(&self) -> &KnotName {
         (&self.name).min(&self.mirror)
     }

@@ -50,7 +50,10 @@ impl OpenKnotType {
 /// `common_reduction_changes_no_closure`, `an_open_knot_is_dominated_by_its_type`.
 ///
 /// # References
-/// `tubiana2011`, `dabrowski2021`
+/// [tubiana2011], [dabrowski2021]
+///
+/// [tubiana2011]: https://doi.org/10.1143/PTPS.191.192
+/// [dabrowski2021]: https://doi.org/10.1093/bib/bbaa196
 pub fn identify_open(
     vertices: &[V],
     n_closures: usize,

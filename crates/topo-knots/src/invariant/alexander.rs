@@ -5,8 +5,8 @@ use super::field::{P, add, inverse, mul, sub};
 
 /// Alexander polynomial of a diagram: symmetric coefficients, the first positive; none if they are not those of a knot.
 ///
-/// One row a crossing of the Alexander quandle, `out = t in + (1 - t) over` (in and out exchanged at negative crossings),
-/// one column an arc; any first minor is the polynomial up to sign and powers of t.
+/// One row per crossing of the Alexander quandle, `out = t in + (1 - t) over` (in and out exchanged at negative crossings), one
+/// column per arc; any first minor is the polynomial up to sign and powers of t.
 pub(super) fn polynomial(diagram: &Diagram) -> Option<Vec<i64>> {
     let n = diagram.n_crossings();
     if n < 3 {

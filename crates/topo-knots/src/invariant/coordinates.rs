@@ -1,4 +1,4 @@
-//! Which coordinates can be reckoned with exactly, and how others are scaled.
+//! Which coordinates allow exact arithmetic, and how others are scaled.
 
 use std::borrow::Cow;
 
@@ -11,11 +11,12 @@ const LAST_PLACE: i32 = -1060;
 /// Binary place of the last digit of any coordinate above 1e-40, and of the eye.
 const EYE_PLACE: i32 = -260;
 
-/// Refuses curves with too few or non-finite vertices; curves of outlandish size are scaled by powers of two, closed ones each axis by
-/// itself: that keeps the type, and no digit is lost.
+/// Refuses curves with too few or non-finite vertices; curves of extreme size are scaled by powers of two, closed ones each
+/// axis by itself: that keeps the type, and no digit is lost.
 ///
 /// # Errors
-/// [`KnotError::TooFewVertices`], [`KnotError::NotFinite`], and [`KnotError::Spread`] for digits too small to reckon with exactly.
+/// [`KnotError::TooFewVertices`], [`KnotError::NotFinite`], and [`KnotError::Spread`] for digits too small for exact
+/// arithmetic.
 pub(crate) fn usable_vertices(vertices: &[V], closed: bool) -> Result<Cow<'_, [V]>, KnotError> {
     let least = if closed { 3 } else { 2 };
     if vertices.len() < least {
@@ -46,15 +47,15 @@ pub(crate) fn usable_vertices(vertices: &[V], closed: bool) -> Result<Cow<'_, [V
     Ok(Cow::Owned(vertices.iter().map(scaled).collect()))
 }
 
-/// Refuses curves with digits so far apart that a product of three coordinates, one of each axis, cannot be reckoned exactly.
+/// Refuses curves with digits so far apart that a product of three coordinates, one of each axis, is not exact.
 ///
 /// `place` is by how many binary places each axis will be scaled.
 fn refuse_spread(vertices: &[V], place: nalgebra::Vector3<i32>) -> Result<(), KnotError> {
-    // Of each axis the last place, and whose it is; the eye of a view has places of its own.
+    // The last place on each axis and its vertex; the eye of a view has its own places.
     let mut last = [(EYE_PLACE, 0); 3];
     for (vertex, x) in vertices.iter().enumerate() {
         for k in 0..3 {
-            // Far from the limit, nearly always, the size of a number tells that its digits are.
+            // Far from the limit, nearly always, the size of a number already shows that its digits are.
             if x[k] != 0.0 && (x[k].abs() < 1e-40 || place[k] != 0) {
                 last[k] = last[k].min((last_place(x[k]) + place[k], vertex));
             }
@@ -87,7 +88,7 @@ fn last_place(x: f64) -> i32 {
 mod tests {
     use super::*;
 
-    /// A coordinate of 1e-94, as a spline leaves it, is reckoned with; not three of 1e-120.
+    /// A coordinate of 1e-94, as a spline may give it, is accepted; three of 1e-120 are not.
     #[test]
     fn digits_too_far_apart_are_refused() {
         let triangle = |tiny: V| [V::x(), V::y(), V::z(), tiny];

@@ -26,8 +26,8 @@ impl Diagram {
 
     /// Removes crossings by Reidemeister's first and second move until neither applies.
     ///
-    /// Two crossings that follow each other on both of their strands bound a bigon in any planar diagram of one
-    /// component, so the code alone tells where the second move applies.
+    /// Two crossings that follow each other on both of their strands bound a bigon in any planar diagram of one component, so
+    /// the code alone shows where the second move applies.
     pub fn cancel(&mut self) {
         let mut alive = vec![true; self.signs.len()];
         let mut place = vec![[0usize; 2]; self.signs.len()];

@@ -2,14 +2,17 @@
 
 use super::diagram::Diagram;
 
-/// Determinant and signature of a diagram; none if its code is not that of a planar diagram.
+/// Determinant and signature of a diagram from its Goeritz matrix G, with the correction η(c) of crossings of type II; none if
+/// its code is not that of a planar diagram.
 ///
 /// ```math
 /// \sigma(K) = \mathrm{sign}\,G - \sum_{\text{type II}} \eta(c), \qquad \det K = |\det G|
 /// ```
 ///
 /// # References
-/// `gordon1978`
+/// [gordon1978]
+///
+/// [gordon1978]: https://doi.org/10.1007/BF01609479
 pub(super) fn determinant_and_signature(diagram: &Diagram) -> Option<(u64, i32)> {
     if diagram.n_crossings() < 3 {
         return Some((1, 0));

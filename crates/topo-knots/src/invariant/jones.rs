@@ -8,7 +8,7 @@ use super::diagram::Diagram;
 
 /// Most crossings of a diagram: below it no coefficient of the bracket can overflow.
 const MOST_CROSSINGS: usize = 60;
-/// Most ways in which the front may be joined; more would make a wide diagram take long.
+/// Limit of the ways in which the front may be joined; wider diagrams would take too long.
 const MOST_STATES: usize = 3000;
 
 /// A Laurent polynomial with integer coefficients in t, such as the Jones polynomial of a knot.
@@ -97,7 +97,8 @@ impl Jones {
     }
 }
 
-/// Jones polynomial of a diagram of a knot; `None` when it has too many crossings or is too wide.
+/// Jones polynomial of a diagram of a knot, from Kauffman's bracket and the writhe w; `None` when it has too many crossings or
+/// is too wide.
 ///
 /// ```math
 /// V(t) = (-A^3)^{-w} \langle D \rangle,\quad t = A^{-4}, \qquad
@@ -106,7 +107,9 @@ impl Jones {
 /// ```
 ///
 /// # References
-/// `kauffman1987`
+/// [kauffman1987]
+///
+/// [kauffman1987]: https://doi.org/10.1016/0040-9383(87)90009-7
 pub(super) fn jones(diagram: &Diagram) -> Option<Jones> {
     let n = diagram.n_crossings();
     if n > MOST_CROSSINGS {

@@ -42,7 +42,7 @@ impl Point {
     }
 }
 
-/// Digits of pi and of e.
+/// Digits of π and of e.
 static POINT: LazyLock<Point> =
     LazyLock::new(|| Point::new(314_159_265_358_979_323, 271_828_182_845_904_523));
 
@@ -52,7 +52,9 @@ static POINT: LazyLock<Point> =
 /// `kauffman_polynomials_as_published`, `at_a_line_of_points_it_is_the_jones_polynomial`.
 ///
 /// # References
-/// `kauffman1990`
+/// [kauffman1990]
+///
+/// [kauffman1990]: https://doi.org/10.1090/S0002-9947-1990-0958895-7
 pub(crate) fn kauffman(diagram: &Diagram) -> Option<u64> {
     at(diagram, &POINT)
 }
@@ -127,7 +129,7 @@ impl Link {
         self.twin.len() / 4
     }
 
-    /// Value of Lambda, by undoing crossings until every component lies above the next and descends.
+    /// Value of Λ, by undoing crossings until every component lies above the next and descends.
     fn value(mut self, point: &Point, left: &mut usize) -> Option<u64> {
         *left = left.checked_sub(1)?;
         let mut factor = 1;

@@ -1,4 +1,4 @@
-//! Pass moves: a stretch of strand that runs above all else, or below, is laid anew along the way with the fewest crossings.
+//! Pass moves: a stretch of strand that runs above all else, or below, is moved to the path with the fewest crossings.
 
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
@@ -36,7 +36,8 @@ impl Diagram {
         }
     }
 
-    /// Lays one run anew: the first that gets shorter or, with the state of a generator of random numbers, any that gets no longer.
+    /// Moves one run to another path: the first run that gets shorter or, with the state of a random number generator, any that
+    /// gets no longer.
     fn pass(&mut self, mut random: Option<&mut Pcg64>) -> bool {
         let n = self.visits.len();
         let begins = |k: &usize| self.visits[*k].over != self.visits[(*k + n - 1) % n].over;

@@ -44,7 +44,7 @@ pub(crate) fn least_crossing(
 /// What a view shows.
 enum View {
     Diagram(Diagram),
-    /// More crossings than wanted, or a vertex on an edge, or crossings of an edge too close to be kept apart.
+    /// More crossings than allowed, or a vertex on an edge, or crossings of an edge too close to be kept apart.
     Unusable,
     /// The curve runs through itself.
     Touching,

@@ -1,4 +1,5 @@
-//! The prime knots of nine and ten crossings that have no file of their own: what is published of them, without a tight shape.
+//! The prime knots of nine and ten crossings that have no file of their own: their published words and invariants, without a
+//! tight shape.
 
 use std::sync::LazyLock;
 
@@ -11,13 +12,15 @@ static TEXT: &str = include_str!("../../data/primes.csv");
 static ENTRIES: LazyLock<Vec<KnotEntry>> =
     LazyLock::new(|| TEXT.lines().skip(1).filter_map(entry).collect());
 
-/// Those knots, in the order of Rolfsen's table, read when they are first asked for.
+/// Those knots, in the order of Rolfsen's table, read when they are first needed.
 ///
 /// # Validation
 /// `all_primes_from_words_and_planar_diagrams`
 ///
 /// # References
-/// `livingston2026`
+/// [livingston2026]
+///
+/// [livingston2026]: https://knotinfo.org
 pub(crate) fn entries() -> &'static [KnotEntry] {
     &ENTRIES
 }

@@ -19,7 +19,10 @@ use crate::{Invariants, Jones, KnotError, closed_braid, jones_polynomial};
 /// `invariants_of_the_table`, `jones_polynomials_of_the_table`, `files_with_faults_are_named`.
 ///
 /// # References
-/// `livingston2026`, `ashton2011`
+/// [livingston2026], [ashton2011]
+///
+/// [livingston2026]: https://knotinfo.org
+/// [ashton2011]: https://doi.org/10.1080/10586458.2011.544581
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct KnotEntry {
@@ -179,7 +182,8 @@ impl KnotEntry {
         self.crossing_number == 0
     }
 
-    /// Whether it is the mirror image of the shape that comes first: the name begins with `m`, or a sum stands after its mirror image.
+    /// Whether it is the mirror image of the shape that comes first: the name begins with `m`, or a sum comes after its mirror
+    /// image.
     pub fn is_mirror_image(&self) -> bool {
         is_mirror_image(&self.name)
     }

@@ -12,9 +12,9 @@ use super::lbfgs::minimise;
 use super::stop::Stop;
 use crate::{V, thickness};
 
-/// Strands nearer than this have a strut; further ones are watched only after the list is made anew.
+/// Strands nearer than this have a strut; more distant ones are included only when the list is rebuilt.
 const REACH: f64 = 2.3;
-/// Largest displacement after which the list of struts is made anew.
+/// Largest displacement after which the list of struts is rebuilt.
 const STALE: f64 = 0.1;
 /// Vertices with a larger radius of curvature are not watched.
 const KINK_REACH: f64 = 3.0;
@@ -44,7 +44,8 @@ pub(super) struct Settled {
 /// \qquad \lambda_k \leftarrow \max(0, \lambda_k - \rho c_k)
 /// ```
 ///
-/// Here c is the distance of two edges less 2, or the radius of curvature at a vertex less 1.
+/// Here c is the distance between two edges minus 2, or the radius of curvature at a vertex minus 1, N the number of edges, L_0
+/// the length at the start and ρ the stiffness.
 pub(super) fn settle(start: &Polyline, tolerance: f64, stop: &Stop) -> Option<Settled> {
     let curve = start.scaled(1.0 / thickness(start).tau).ok()?;
     let mut problem = Problem::new(&curve)?;

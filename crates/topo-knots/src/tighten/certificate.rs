@@ -13,11 +13,11 @@ const CONTACT: f64 = 5e-3;
 /// What was checked on a tight curve.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Certificate {
-    /// Smallest radius of curvature.
+    /// Smallest radius of curvature, in tube radii.
     pub thickness_minrad: f64,
-    /// Half the smallest doubly critical self-distance, from all pairs of edges.
+    /// Half the smallest doubly critical self-distance, from all pairs of edges, in tube radii.
     pub thickness_dcsd: f64,
-    /// Half the smallest distance of points at least pi apart along the curve.
+    /// Half the smallest distance between points at least π apart along the curve, in tube radii.
     pub thickness_windowed: f64,
     /// Writhe of the polygon.
     pub writhe: f64,

@@ -37,7 +37,7 @@ impl Row {
         }
     }
 
-    /// Rate of change of the guarded quantity under displacements `y` (three numbers a vertex).
+    /// Rate of change of the guarded quantity under displacements `y` (three numbers per vertex).
     pub fn dot(&self, y: &[f64]) -> f64 {
         (0..self.n())
             .map(|k| {
@@ -60,7 +60,7 @@ impl Row {
 
 /// Rebuilds the constraints of a unit tube around the closed polygon `x` that a step of at most `delta` a vertex may meet.
 ///
-/// Struts are all pairs of edges more than pi apart along the curve and closer than 2 + 2 `delta`; kinks all vertices
+/// Struts are all pairs of edges more than π apart along the curve and closer than 2 + 2 `delta`; kinks all vertices
 /// with a radius of curvature below 3.
 pub(crate) fn rebuild(x: &[V], delta: f64, pairs: &mut Vec<(u32, u32)>, rows: &mut Vec<Row>) {
     rows.clear();

@@ -1,4 +1,4 @@
-//! Hops between basins: a random walk over tight curves that may go uphill, begun anew from other words of the knot.
+//! Hops between basins: a random walk over tight curves that may go uphill, restarted from other words of the knot.
 
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;

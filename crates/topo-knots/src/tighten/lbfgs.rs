@@ -2,7 +2,7 @@
 
 /// Pairs of step and change of gradient that are remembered.
 const MEMORY: usize = 20;
-/// Share of the expected fall that a step must bring.
+/// Share of the expected decrease that a step must reach.
 const ENOUGH: f64 = 1e-4;
 /// Largest displacement of a coordinate in a step.
 const LONGEST: f64 = 0.05;
@@ -25,7 +25,9 @@ pub(super) struct Minimised {
 /// Minimises from `x` on, until the preconditioned gradient falls below `tolerance`, `stop` holds, or steps run out.
 ///
 /// # References
-/// `nocedal2006`
+/// [nocedal2006]
+///
+/// [nocedal2006]: https://doi.org/10.1007/978-0-387-40065-5
 pub(super) fn minimise(
     objective: &mut impl Objective,
     x: &mut [f64],

@@ -18,7 +18,7 @@ pub(crate) struct Level {
     pub weights: [f64; 3],
     /// Stops when the ropelength falls by less than this fraction over a window of steps.
     pub tolerance: f64,
-    /// A curve whose vertices still want to move further than this is not at rest.
+    /// A curve whose vertices would still move further than this is not at rest.
     pub rest: f64,
     /// Stops once the ropelength is below this.
     pub enough: f64,
@@ -79,14 +79,15 @@ pub(crate) struct Outcome {
     pub converged: bool,
 }
 
-/// Shortens a closed curve at thickness 1, keeping its number of vertices and its type.
+/// Shortens a closed curve at thickness 1, with its number of vertices and its type kept, by a sequence of quadratic programs
+/// in the displacements y:
 ///
 /// ```math
 /// \min_y \frac{N}{2 L_0} \sum_i |e_i + \Delta y_i|^2 + \frac{\mu h}{2} |y|^2 + \frac{\mu_2}{2 h^3} |D^2 y|^2,
 /// \qquad A y \ge b
 /// ```
 ///
-/// Cut short, it gives the shortest curve met so far.
+/// When it is interrupted, it returns the shortest curve so far.
 pub(crate) fn tighten_level(start: &Polyline, level: &Level, stop: &Stop) -> Option<Outcome> {
     let n = start.n_vertices();
     let tau = thickness(start).tau;

@@ -30,7 +30,7 @@ impl Hessian {
 /// Solution of a quadratic program.
 #[derive(Debug, Default)]
 pub(crate) struct Solution {
-    /// Displacements, three numbers a vertex.
+    /// Displacements, three numbers per vertex.
     pub y: Vec<f64>,
     /// Factorisations used.
     pub n_iterations: usize,
@@ -44,7 +44,10 @@ const MAX_ITERATIONS: usize = 40;
 /// Minimises `y.H y/2 + gradient.y` subject to every row, to a duality gap of `tolerance`.
 ///
 /// # References
-/// `mehrotra1992`, `nocedal2006`
+/// [mehrotra1992], [nocedal2006]
+///
+/// [mehrotra1992]: https://doi.org/10.1137/0802028
+/// [nocedal2006]: https://doi.org/10.1007/978-0-387-40065-5
 pub(crate) fn solve(
     hessian: Hessian,
     gradient: &[f64],
@@ -87,7 +90,7 @@ pub(crate) fn solve(
     })
 }
 
-/// Where the iteration stands, and where it goes: vectors over the coordinates and over the rows.
+/// The present point and direction of the iteration: vectors over the coordinates and over the rows.
 struct Iterate {
     y: Vec<f64>,
     slack: Vec<f64>,
@@ -388,7 +391,7 @@ mod tests {
     }
 
     #[test]
-    fn active_and_idle_rows_are_told_apart() {
+    fn active_and_idle_rows_are_distinguished() {
         // Each vertex is drawn to (1, 0, 0); the first row keeps vertex 0 above y = 2, the second one is idle.
         let gradient: Vec<f64> = (0..8).flat_map(|_| [-2.0, 0.0, 0.0]).collect();
         let rows = [

@@ -27,13 +27,13 @@ pub struct SecondOpinion {
     pub curve: Polyline,
     /// Its length over its thickness, which is found by brute force, in units of the tube radius.
     pub length_over_radius: f64,
-    /// Ropelength of the loosened curve that the method started from.
+    /// Ropelength of the loosened curve that the method started from, in tube radii.
     pub start_length_over_radius: f64,
     /// Whether it came to rest.
     pub converged: bool,
     /// Evaluations of energy and gradient.
     pub n_evaluations: usize,
-    /// Processor seconds.
+    /// Processor time, in seconds.
     pub cpu_seconds: f64,
 }
 
@@ -49,7 +49,7 @@ pub fn second_opinion(tight: &TightKnot) -> Result<SecondOpinion, KnotError> {
     second_opinion_until(tight, &Interrupt::new())
 }
 
-/// As [`second_opinion`], but given up when `interrupt` asks.
+/// As [`second_opinion`], but stopped when `interrupt` requests it.
 ///
 /// # Errors
 /// As [`second_opinion`], and [`KnotError::Interrupted`] with the curve of the first method.

@@ -25,7 +25,7 @@ pub struct TightenSettings {
     pub seed: u64,
     /// A level ends when the ropelength falls by less than this fraction within a few steps.
     pub tolerance: f64,
-    /// Largest number of quadratic programs a level.
+    /// Largest number of quadratic programs per level.
     pub max_steps: usize,
 }
 

@@ -1,4 +1,4 @@
-//! The goal to end early, and whether it was heeded: then what came out is not what the settings ask for.
+//! An interrupt of the tightening, and whether work was left undone because of it.
 
 use std::cell::Cell;
 
@@ -7,7 +7,7 @@ use topo_core::Interrupt;
 use super::TightKnot;
 use crate::KnotError;
 
-/// An interrupt, and whether work was cut short for it.
+/// An interrupt, and whether work was left undone because of it.
 #[derive(Debug, Default)]
 pub(crate) struct Stop {
     interrupt: Interrupt,
@@ -15,7 +15,7 @@ pub(crate) struct Stop {
 }
 
 impl Stop {
-    /// Stops when `interrupt` asks.
+    /// Stops when `interrupt` requests it.
     pub(crate) fn at(interrupt: &Interrupt) -> Self {
         Self {
             interrupt: interrupt.clone(),
@@ -23,7 +23,7 @@ impl Stop {
         }
     }
 
-    /// Whether to leave the rest undone; who sees it does it.
+    /// Whether to leave the rest undone; a caller that reads `true` must do so.
     pub(crate) fn asks(&self) -> bool {
         if self.interrupt.is_requested() {
             self.is_heeded.set(true);

@@ -10,14 +10,16 @@ use crate::{V, thickness};
 /// Struts of a tight closed curve: the two ends of each on the centreline, the shortest first.
 ///
 /// A strut joins strands at most `1 + slack` diameters of the thickest tube apart that are at least half a turn of that tube
-/// (pi radii) apart along the curve. Of struts whose both ends lie within `spacing` edges of those of a shorter one only that is kept, so
-/// that a line of contact is a row of struts.
+/// (π radii) apart along the curve. Of struts whose two ends are both within `spacing` edges of those of a shorter strut, only
+/// the shorter one is kept, so that a line of contact is a row of struts.
 ///
 /// # Validation
 /// `struts_join_strands_a_diameter_apart`
 ///
 /// # References
-/// `ashton2011`
+/// [ashton2011]
+///
+/// [ashton2011]: https://doi.org/10.1080/10586458.2011.544581
 pub fn struts(curve: &Polyline, slack: f64, spacing: usize) -> Vec<[V; 2]> {
     let x = curve.vertices();
     let (n, tau) = (x.len(), thickness(curve).tau);

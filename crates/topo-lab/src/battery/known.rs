@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::{Battery, Scene};
 use crate::LabError;
-use crate::scene::read_text;
+use crate::scene::{Document, SceneFault, listed, nearest, read_text};
 
 /// Reads a scene file of one of the batteries.
 ///
@@ -23,42 +23,83 @@ pub fn read_scene<B: Battery + ?Sized>(
 /// As [`read_scene`].
 ///
 /// # Validation
-/// `scenes_are_told_by_their_tables`
+/// `scenes_are_known_by_their_tables`
 pub fn parse_scene<B: Battery + ?Sized>(
     batteries: &[&B],
     text: &str,
     path: &Path,
 ) -> Result<Box<dyn Scene>, LabError> {
-    let wrong = |message| LabError::Scene {
-        path: path.to_owned(),
-        message,
-    };
-    let tables: toml::Table = toml::from_str(text).map_err(|e| wrong(e.to_string()))?;
-    let there = batteries.iter().filter(|b| tables.contains_key(b.table()));
+    let document = Document::new(text, path)?;
+    let there = batteries.iter().filter(|b| document.has(b.table()));
     match there.collect::<Vec<_>>()[..] {
         [battery] => battery.parse(text, path),
-        [] => {
-            let known = batteries.iter();
-            let known = known.map(|b| format!("[{}] ({})", b.table(), b.what()));
-            let known = listed(known.collect(), "or");
-            Err(wrong(format!("no table {known}: write one")))
-        }
-        ref several => {
-            let names = several.iter().map(|b| format!("[{}]", b.table()));
-            let names = listed(names.collect(), "and");
-            let all = if several.len() == 2 { "both" } else { "all" };
-            Err(wrong(format!(
-                "the tables {names} are {all} there: keep one, a scene is one battery"
-            )))
-        }
+        ref several => Err(no_battery(batteries, several, &document).into()),
     }
 }
 
-/// Words with commas between them, and a last one.
-fn listed(words: Vec<String>, last: &str) -> String {
-    match &words[..] {
-        [first @ .., end] if !first.is_empty() => format!("{} {last} {end}", first.join(", ")),
-        _ => words.concat(),
+/// All that is wrong with a scene file of one of the batteries, as far as it can be seen without a run.
+///
+/// # Errors
+/// A file that cannot be read.
+///
+/// # Validation
+/// `all_faults_of_a_file_are_found`
+pub fn scene_faults<B: Battery + ?Sized>(
+    batteries: &[&B],
+    path: &Path,
+) -> Result<Vec<SceneFault>, LabError> {
+    let text = match read_text(path) {
+        Ok(text) => text,
+        Err(LabError::Scene(fault)) => return Ok(vec![*fault]),
+        Err(e) => return Err(e),
+    };
+    let document = match Document::read_tables(&text, path) {
+        Ok(document) => document,
+        Err(faults) => return Ok(faults),
+    };
+    let there = batteries.iter().filter(|b| document.has(b.table()));
+    Ok(match there.collect::<Vec<_>>()[..] {
+        [battery] => battery.faults(&text, path),
+        ref several => vec![no_battery(batteries, several, &document)],
+    })
+}
+
+/// What is said of a scene of no battery, or of several.
+fn no_battery<B: Battery + ?Sized>(
+    batteries: &[&B],
+    several: &[&&B],
+    document: &Document<'_>,
+) -> SceneFault {
+    let fault =
+        |found: String, expected: &str| SceneFault::of_file(document.path(), found, expected);
+    let Some(last) = several.last() else {
+        let known = batteries.iter();
+        let known: Vec<String> = known
+            .map(|b| format!("[{}] ({})", b.table(), b.what()))
+            .collect();
+        let tables: Vec<&str> = batteries.iter().map(|b| b.table()).collect();
+        for (name, _) in document.spans() {
+            if let Some(table) = nearest(name.get_ref(), &tables) {
+                let found = document.source(&name.span());
+                let fault = fault(found, &format!("did you mean [{table}]?"));
+                return fault
+                    .key(name.get_ref().as_ref())
+                    .at(document.text(), &name.span());
+            }
+        }
+        let found = format!("no table {}", listed(&known, "or"));
+        return fault(
+            found,
+            "write one; `topo scene new` writes a scene to begin with",
+        );
+    };
+    let names: Vec<String> = several.iter().map(|b| format!("[{}]", b.table())).collect();
+    let all = if several.len() == 2 { "both" } else { "all" };
+    let found = format!("the tables {} are {all} there", listed(&names, "and"));
+    let fault = fault(found, "keep one, a scene is one battery");
+    match document.find(last.table()) {
+        Some(place) => fault.at(document.text(), &place.key),
+        None => fault,
     }
 }
 
@@ -68,7 +109,7 @@ mod tests {
     use crate::{Colloid, Elastic};
 
     #[test]
-    fn scenes_are_told_by_their_tables() {
+    fn scenes_are_known_by_their_tables() {
         let batteries: [&dyn Battery; 2] = [&Elastic, &Colloid];
         let parse = |text: &str| {
             let scene = parse_scene(&batteries, text, Path::new("s.toml"));
@@ -81,22 +122,12 @@ mod tests {
         let words = |text: &str| parse(text).unwrap_err();
         assert_eq!(
             words("[charge]\n"),
-            "s.toml is not a scene:\nno table [rod] (a knotted fibre) or [nematic] (a colloid): write one"
+            "s.toml: no table [rod] (a knotted fibre) or [nematic] (a colloid): write one; `topo scene new` writes a scene to begin with"
         );
         assert_eq!(
             words("[rod]\n[nematic]\n"),
-            "s.toml is not a scene:\nthe tables [rod] and [nematic] are both there: keep one, a scene is one battery"
+            "s.toml, line 2: the tables [rod] and [nematic] are both there: keep one, a scene is one battery\n --> s.toml:2:2\n  |\n2 | [nematic]\n  |  ^^^^^^^"
         );
         assert!(words("[rod\n").contains("line 1"));
-    }
-
-    #[test]
-    fn lists_read_as_sentences() {
-        let list = |n: usize| {
-            let words = ["a", "b", "c"][..n].iter().map(ToString::to_string);
-            listed(words.collect(), "or")
-        };
-        assert_eq!([list(0), list(1)], ["", "a"]);
-        assert_eq!([list(2), list(3)], ["a or b", "a, b or c"]);
     }
 }

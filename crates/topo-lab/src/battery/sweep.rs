@@ -78,7 +78,7 @@ impl Stage {
 
 /// A sweep that has been run.
 pub trait Swept {
-    /// Cases without a result, or whose run did not come to its end.
+    /// Cases without a result, or whose run did not finish.
     fn failed(&self) -> &[FailedCase];
 
     /// Cases computed now.

@@ -2,12 +2,14 @@
 
 use std::path::Path;
 
+use super::file;
 use super::identity::RESULTS_VERSION;
 use super::probe::ROD_PROBE;
 use super::scene::ElasticScene;
 use crate::LabError;
 use crate::battery::{Battery, Scene};
 use crate::cost::Probe;
+use crate::scene::{Keys, SceneFault};
 
 /// Knotted elastic fibres.
 #[derive(Debug, Clone, Copy)]
@@ -40,5 +42,23 @@ impl Battery for Elastic {
 
     fn parse(&self, text: &str, path: &Path) -> Result<Box<dyn Scene>, LabError> {
         Ok(Box::new(ElasticScene::parse(text, path)?))
+    }
+
+    fn keys(&self) -> Option<&'static Keys> {
+        Some(file::keys())
+    }
+
+    fn first_scene(&self) -> &'static [(&'static str, &'static str)] {
+        &[
+            ("rod.knot", "\"3_1\""),
+            ("rod.twist", "[0.0, 2.0]"),
+            ("rod.contact.stiffness", "20.0"),
+            ("rod.friction.ratio", "0.1"),
+            ("accuracy.edges", "100"),
+        ]
+    }
+
+    fn faults(&self, text: &str, path: &Path) -> Vec<SceneFault> {
+        ElasticScene::faults(text, path)
     }
 }

@@ -15,49 +15,53 @@ use crate::scene::{AxisValue, Document, check_count, product};
 /// Prime knots of up to seven crossings, which "all" stands for.
 const ALL: usize = 14;
 /// Most closures of a sample: types are as good as certain with far fewer.
-const MOST_CLOSURES: usize = 100_000;
+pub(super) const MOST_CLOSURES: usize = 100_000;
 /// Most memory of a case, in bytes.
 const MOST_BYTES: f64 = 16e9;
 
-/// Checks a scene; `poisson_ratio` is the one written, or the first of several.
-///
-/// # Errors
-/// File, line, key, value and what would be right.
-pub(super) fn check(
+/// What is refused of a scene; `poisson_ratio` is the one written, or the first of several.
+pub(super) fn faults(
     scene: &ElasticScene,
     poisson_ratio: f64,
     document: &Document<'_>,
-) -> Result<(), LabError> {
-    check_knots(scene, document)?;
+) -> Vec<LabError> {
+    let mut faults = Vec::new();
+    let mut see = |checked: Result<(), LabError>| faults.extend(checked.err());
+    see(check_knots(scene, document));
     let n_knots = scene.knots.iter().map(|k| if k == "all" { ALL } else { 1 });
     let outer = [
         ("rod.knot", n_knots.sum()),
         ("rod.twist", scene.twists.len().max(1)),
     ];
-    check_count(document, &outer, &scene.axes)?;
-    for nu in values(scene, "rod.poisson_ratio").unwrap_or(vec![poisson_ratio]) {
-        if !(nu > -1.0 && nu <= 0.5) {
-            let remedy = "a number above -1 and up to 0.5 is needed";
-            return Err(document.wrong("rod.poisson_ratio", nu, remedy));
-        }
+    if let Err(too_many) = check_count(document, &outer, &scene.axes) {
+        see(Err(too_many));
+        return faults;
     }
-    for case in inner_cases(scene) {
-        check_case(scene, &case, document)?;
+    let ratios = values(scene, "rod.poisson_ratio").unwrap_or(vec![poisson_ratio]);
+    if let Some(nu) = ratios.iter().find(|nu| !(**nu > -1.0 && **nu <= 0.5)) {
+        let remedy = "a number above -1 and up to 0.5 is needed";
+        see(Err(document.wrong("rod.poisson_ratio", nu, remedy)));
+    }
+    let cases = inner_cases(scene);
+    for check in [check_imperfection, check_rod, check_memory, check_cuts] {
+        see(cases
+            .iter()
+            .try_for_each(|case| check(scene, case, document)));
     }
     let refuse = |e| refused(document, e);
-    scene.accuracy.checked().map_err(refuse)?;
-    scene.charge.checked().map_err(refuse)?;
+    see(scene.accuracy.checked().map(drop).map_err(refuse));
+    see(scene.charge.checked().map(drop).map_err(refuse));
     let has_twist = !scene.twists.is_empty();
-    scene.discharge.checked(has_twist).map_err(refuse)?;
+    see(scene.discharge.checked(has_twist).map(drop).map_err(refuse));
     let closures = scene.timeline.closures;
     if closures > MOST_CLOSURES {
         let remedy = format!("at most {MOST_CLOSURES} closures of each sample are looked at");
-        return Err(document.wrong("discharge.closures", closures, remedy));
+        see(Err(document.wrong("discharge.closures", closures, remedy)));
     }
     for (key, reason) in idle(scene) {
-        document.idle(key, reason)?;
+        see(document.idle(key, reason));
     }
-    Ok(())
+    faults
 }
 
 /// The cases of one knot at one twist.
@@ -113,38 +117,74 @@ fn check_knots(scene: &ElasticScene, document: &Document<'_>) -> Result<(), LabE
     Ok(())
 }
 
-fn check_case(
+fn check_imperfection(
+    _: &ElasticScene,
+    case: &ElasticCase,
+    document: &Document<'_>,
+) -> Result<(), LabError> {
+    if (0.0..=0.5).contains(&case.imperfection) {
+        return Ok(());
+    }
+    let remedy = "a number from 0 to 0.5 (in h) is needed";
+    Err(document.wrong("rod.imperfection", case.imperfection, remedy))
+}
+
+fn check_rod(
+    _: &ElasticScene,
+    case: &ElasticCase,
+    document: &Document<'_>,
+) -> Result<(), LabError> {
+    let checked = case.rod.clone().checked();
+    checked.map(drop).map_err(|e| refused(document, e))
+}
+
+fn check_memory(
+    _: &ElasticScene,
+    case: &ElasticCase,
+    document: &Document<'_>,
+) -> Result<(), LabError> {
+    let n_edges = case.rod.n_edges;
+    let bytes_of_edge = BYTES / 200.0;
+    if n_edges as f64 * bytes_of_edge <= MOST_BYTES {
+        return Ok(());
+    }
+    Err(document.wrong(
+        EDGES,
+        n_edges,
+        format!(
+            "a case would take about {:.3e} GB of memory, and {} GB are the most: use at most {} edges",
+            n_edges as f64 * bytes_of_edge / 1e9,
+            MOST_BYTES / 1e9,
+            (MOST_BYTES / bytes_of_edge) as usize,
+        ),
+    ))
+}
+
+fn check_cuts(
     scene: &ElasticScene,
     case: &ElasticCase,
     document: &Document<'_>,
 ) -> Result<(), LabError> {
-    if !(0.0..=0.5).contains(&case.imperfection) {
-        let remedy = "a number from 0 to 0.5 (in h) is needed";
-        return Err(document.wrong("rod.imperfection", case.imperfection, remedy));
-    }
-    let checked = case.rod.clone().checked();
-    checked.map_err(|e| refused(document, e))?;
-    let n_edges = case.rod.n_edges;
-    let bytes_of_edge = BYTES / 200.0;
-    if n_edges as f64 * bytes_of_edge > MOST_BYTES {
-        return Err(document.wrong(
-            EDGES,
-            n_edges,
-            format!(
-                "a case would take about {:.3e} GB of memory, and {} GB are the most: use at most {} edges",
-                n_edges as f64 * bytes_of_edge / 1e9,
-                MOST_BYTES / 1e9,
-                (MOST_BYTES / bytes_of_edge) as usize,
-            ),
-        ));
-    }
-    match scene.cuts.clash(n_edges) {
+    match scene.cuts.clash(case.rod.n_edges) {
         Some(remedy) => {
             let cuts = String::from(scene.cuts.clone());
             Err(document.wrong("discharge.cuts", cuts, remedy))
         }
         None => Ok(()),
     }
+}
+
+/// Knots of the scene that its table does not have.
+pub(super) fn unknown_knots(scene: &ElasticScene, document: &Document<'_>) -> Vec<LabError> {
+    let table = match scene.knot_table() {
+        Ok(table) => table,
+        Err(e) => return vec![document.wrong("knots", document.written("knots"), e.to_string())],
+    };
+    let named = scene.knots.iter().filter(|name| *name != "all");
+    let unknown = named.filter_map(|name| Some((name, table.get(name).err()?)));
+    unknown
+        .map(|(name, e)| document.wrong("rod.knot", format!("\"{name}\""), e.to_string()))
+        .collect()
 }
 
 /// What the rod refuses, with the key of the scene.

@@ -1,17 +1,19 @@
 //! Choices that a scene of rods makes: names, cuts, what presets mean.
 
+use std::borrow::Cow;
 use std::fmt;
 
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{self, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use topo_knots::TightenSettings;
 use topo_rod::Accuracy;
 
 use crate::preset::Preset;
-use crate::scene::repeated_number;
+use crate::scene::{listed, repeated_number};
 
 /// One knot name or a list; "all" stands for the fourteen prime knots of up to seven crossings.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub enum Names {
     /// One name.
@@ -55,7 +57,7 @@ impl TryFrom<String> for Cuts {
             other => other
                 .strip_prefix("all:")
                 .and_then(all)
-                .ok_or_else(|| format!("`{text}` is not a choice of cuts: write \"argmax\", \"near-ties\", \"all:K\" with K from 1 to 10000, or places s/L from 0 to below 1")),
+                .ok_or_else(|| "write \"argmax\", \"near-ties\", \"all:K\" with K from 1 to 10000, or places s/L from 0 to below 1".to_owned()),
         }
     }
 }
@@ -161,6 +163,48 @@ impl<'de> Deserialize<'de> for Cuts {
         }
         deserializer.deserialize_any(Choice)
     }
+}
+
+impl JsonSchema for Cuts {
+    fn schema_name() -> Cow<'static, str> {
+        "Cuts".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        let place = || json_schema!({ "type": "number", "minimum": 0, "exclusiveMaximum": 1 });
+        json_schema!({ "anyOf": [
+            { "const": "argmax", "description": "The maximum of the smoothed energy density." },
+            { "const": "near-ties", "description": "Every local maximum within 3 % of the largest." },
+            { "type": "string", "pattern": "^all:[0-9]+$", "x-form": "\"all:K\" for K evenly spaced cuts" },
+            place(),
+            { "type": "array", "items": place(), "minItems": 1, "maxItems": MOST_CUTS },
+        ] })
+    }
+}
+
+/// What presets choose, in words: the draft, and those that differ from it.
+pub(super) fn by_preset<T: PartialEq + fmt::Display>(value: impl Fn(Preset) -> T) -> String {
+    let mut chosen: Vec<(T, Vec<&str>)> = Vec::new();
+    for preset in [
+        Preset::Draft,
+        Preset::Standard,
+        Preset::Paper,
+        Preset::Reference,
+    ] {
+        let value = value(preset);
+        match chosen.iter_mut().find(|(known, _)| *known == value) {
+            Some((_, names)) => names.push(preset.name()),
+            None => chosen.push((value, vec![preset.name()])),
+        }
+    }
+    let words = chosen
+        .iter()
+        .enumerate()
+        .map(|(k, (value, names))| match k {
+            0 => value.to_string(),
+            _ => format!("{value} with {}", listed(names, "and")),
+        });
+    words.collect::<Vec<String>>().join("; ")
 }
 
 /// Share of the largest density within which a local maximum counts as a near tie.
@@ -270,7 +314,7 @@ mod tests {
     }
 
     #[test]
-    fn cuts_at_one_vertex_are_told() {
+    fn cuts_at_one_vertex_are_reported() {
         assert!(Cuts::All(8).clash(8).is_none() && Cuts::All(9).clash(8).is_some());
         let at = |list: &[f64]| Cuts::At(list.to_vec()).clash(100);
         assert_eq!(at(&[0.0, 0.01, 0.5]), None);

@@ -21,7 +21,9 @@
 //! Instead of the table `[accuracy]`, the first line may say `accuracy = 0.02` (relative error of t99) or `budget = "10 min"`.
 
 use std::path::Path;
+use std::sync::OnceLock;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use topo_rod::{
     Accuracy, ChargeSettings, ContactParameters, DischargeSettings, Ends, FrictionParameters,
@@ -30,7 +32,7 @@ use topo_rod::{
 
 use super::case::ElasticCase;
 use super::check;
-use super::choices::{Cuts, Names};
+use super::choices::{Cuts, Names, by_preset};
 use super::defaults::{self, poisson_ratio_of};
 use super::keys::{EDGES, ROD_KEYS};
 use super::scene::{ElasticScene, OwnKnots};
@@ -38,60 +40,109 @@ use crate::LabError;
 use crate::goal::{Goal, GoalOr, budget};
 use crate::preset::Preset;
 use crate::scene::{
-    Axis, Document, Numbers, axes, folder_of, numbers, put_axes, read_text, remove,
+    Axis, Document, Keys, Numbers, SceneFault, axes, folder_of, numbers, put_axes, read_text,
+    remove,
 };
 use topo_analysis::TimelineSettings;
 
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// The fibre.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct RodTable {
+    /// Name of a knot, a list of names, or `"all"` for the 14 prime knots to seven crossings.
+    #[schemars(example = "3_1")]
     knot: Names,
+    /// L/h, length over radius.
     #[serde(default = "defaults::slenderness")]
+    #[schemars(extend("x-unit" = "1", "exclusiveMinimum" = 0), example = 40.0)]
     slenderness: f64,
+    /// How L/h is read for a knot whose ropelength is another.
     #[serde(default)]
+    #[schemars(example = Reading::Hard)]
     reading: Reading,
+    /// θ'h tied in before the ends are fused.
+    #[schemars(extend("x-unit" = "1", "x-default" = "no twist is modelled"), example = 1.5)]
     twist: Option<Numbers>,
+    /// ν, which sets the ratio of twist to bending stiffness, 1/(1 + ν).
     #[serde(default = "defaults::poisson_ratio")]
+    #[schemars(extend("x-unit" = "1", "exclusiveMinimum" = -1), range(max = 0.5), example = 0.5)]
     poisson_ratio: f64,
+    /// γ = E/E_b, stretch over bending stiffness.
     #[serde(default = "defaults::stretch_ratio")]
+    #[schemars(range(min = 1e-3, max = 1e6), extend("x-unit" = "1"), example = 10.0)]
     stretch_ratio: f64,
+    /// Contact between strands; without the table they pass through each other.
     contact: Option<ContactParameters>,
+    /// Friction between strands; without the table none is modelled.
     friction: Option<FrictionParameters>,
+    /// Largest random displacement of the start curve.
     #[serde(default = "defaults::imperfection")]
+    #[schemars(range(min = 0, max = 0.5), extend("x-unit" = "h"), example = 0.01)]
     imperfection: f64,
+    /// Seed of the imperfection and of the closures.
     #[serde(default = "defaults::seed")]
+    #[schemars(extend("x-unit" = "1"), example = 2)]
     seed: u64,
 }
 
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+/// The discharge of the cut fibre.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 struct DischargeTable {
+    /// Where the fibre is cut: places s/L, or a rule that finds them.
+    #[schemars(extend("x-unit" = "s/L", "x-default" = by_preset(|p| String::from(p.cuts()))), example = "all:8")]
     cuts: Option<Cuts>,
+    /// Share of the elastic energy whose release ends the run.
+    #[schemars(range(min = 1e-6, max = 0.999_999_999), extend("x-unit" = "1", "default" = DischargeSettings::default().until_released), example = 0.99)]
     until_released: Option<f64>,
+    /// Longest time followed.
+    #[schemars(extend("x-unit" = "T_0", "default" = DischargeSettings::default().longest, "exclusiveMinimum" = 0), example = 100.0)]
     longest: Option<f64>,
+    /// Directions along which the open fibre is closed to find its knot type; 0: it is not looked for.
+    #[schemars(range(max = check::MOST_CLOSURES), extend("x-unit" = "1", "default" = TimelineSettings::default().closures), example = 64)]
     closures: Option<usize>,
+    /// What holds, moves or loads the ends of the open fibre.
     ends: Ends,
 }
 
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+/// How accurately a fibre is followed.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 struct AccuracyTable {
+    /// Where the other keys have their values from.
+    #[schemars(example = Preset::Standard)]
     preset: Preset,
+    /// Edges N of the fibre.
+    #[schemars(range(min = RodParameters::LEAST_EDGES), extend("x-unit" = "1", "x-default" = by_preset(Preset::edges)), example = 120)]
     edges: Option<usize>,
+    /// Local error aimed at.
+    #[schemars(range(min = 1e-10, max = 1), extend("x-unit" = "h", "x-default" = by_preset(Preset::tolerance)), example = 1e-4)]
     tolerance: Option<f64>,
+    /// Coefficient of the integrator `"ros2w"`: 1 + 1/√2 for loose, 1 - 1/√2 for tight tolerances.
+    #[schemars(range(min = 0.25, max = 4), extend("x-unit" = "1", "default" = Accuracy::default().gamma), example = 0.3)]
     gamma: Option<f64>,
+    /// Which integrator advances the fibre.
+    #[schemars(extend("default" = IntegratorKind::default()), example = IntegratorKind::Rkc2)]
     integrator: Option<IntegratorKind>,
+    /// Steps that one factorised Newton matrix may serve.
+    #[schemars(range(min = 1, max = 1_000_000_000), extend("x-unit" = "steps", "x-default" = by_preset(|p| p.accuracy().reuse)), example = 4)]
     reuse: Option<usize>,
+    /// Most steps of a phase.
+    #[schemars(range(min = 1, max = 1_000_000_000_000_000_u64), extend("x-unit" = "steps", "default" = Accuracy::default().max_steps), example = 10_000)]
     max_steps: Option<u64>,
 }
 
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+/// The charge of the closed fibre.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 struct ChargeTable {
+    /// Duration of the relaxation.
+    #[schemars(extend("x-unit" = "T_0", "default" = ChargeSettings::default().duration, "exclusiveMinimum" = 0), example = 1.0)]
     duration: Option<f64>,
 }
 
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// A scene of knotted fibres.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct File {
     rod: RodTable,
@@ -99,10 +150,22 @@ struct File {
     charge: ChargeTable,
     #[serde(default)]
     discharge: DischargeTable,
+    /// Largest relative error of t99, instead of the table [accuracy].
     #[serde(default)]
+    #[schemars(extend("x-unit" = "1", "x-default" = "settings"))]
     accuracy: GoalOr<AccuracyTable>,
+    /// Time that all cases may take, instead of the table [accuracy].
+    #[schemars(extend("x-default" = "none"), example = "10 min")]
     budget: Option<String>,
+    /// Folder beside the scene with knots of your own.
+    #[schemars(extend("x-default" = "the built-in knots"), example = "my-knots")]
     knots: Option<String>,
+}
+
+/// The keys of these files.
+pub(super) fn keys() -> &'static Keys {
+    static KEYS: OnceLock<Keys> = OnceLock::new();
+    KEYS.get_or_init(|| Keys::of::<File>().with_several(&ROD_KEYS))
 }
 
 impl File {
@@ -210,15 +273,33 @@ impl ElasticScene {
     /// As [`read`](Self::read).
     pub fn parse(text: &str, path: &Path) -> Result<Self, LabError> {
         let document = Document::new(text, path)?;
-        let (plain, axes) = axes(&document, &ROD_KEYS, |text| {
+        keys().check(&document)?;
+        let (scene, faults) = Self::described(&document)?;
+        faults.into_iter().next().map_or(Ok(scene), Err)
+    }
+
+    /// The scene of a file whose keys have values of the right form, and what is refused of it.
+    fn described(document: &Document<'_>) -> Result<(Self, Vec<LabError>), LabError> {
+        let (plain, axes) = axes(document, &ROD_KEYS, |text| {
             Ok(document.read::<File>(text)?.case())
         })?;
-        let twists = numbers(&document, "rod.twist")?.unwrap_or_default();
+        let twists = numbers(document, "rod.twist")?.unwrap_or_default();
         let file: File = document.read(&plain)?;
         let poisson_ratio = file.rod.poisson_ratio;
-        let scene = file.scene(&document, axes, twists)?;
-        check::check(&scene, poisson_ratio, &document)?;
-        Ok(scene)
+        let scene = file.scene(document, axes, twists)?;
+        let faults = check::faults(&scene, poisson_ratio, document);
+        Ok((scene, faults))
+    }
+
+    /// All that is wrong with a text, as far as it can be seen without a run.
+    pub(super) fn faults(text: &str, path: &Path) -> Vec<SceneFault> {
+        keys().faults_of_text(text, path, |document| match Self::described(document) {
+            Ok((scene, mut faults)) => {
+                faults.extend(check::unknown_knots(&scene, document));
+                faults
+            }
+            Err(e) => vec![e],
+        })
     }
 
     /// The scene as the text of a file with every value written out; [`parse`](Self::parse) gives the same scene back.

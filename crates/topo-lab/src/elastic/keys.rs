@@ -15,7 +15,7 @@ fn friction(case: &mut ElasticCase) -> &mut FrictionParameters {
 }
 
 /// Knots run slowest, then twists, then these; the last one runs fastest.
-pub(super) const ROD_KEYS: [SweptKey<ElasticCase>; 11] = [
+pub(crate) const ROD_KEYS: [SweptKey<ElasticCase>; 11] = [
     SweptKey {
         key: "rod.slenderness",
         access: Access::Number(|c| Some(c.rod.slenderness), |c, x| c.rod.slenderness = x),

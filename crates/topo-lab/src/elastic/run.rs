@@ -26,7 +26,7 @@ pub(crate) struct ChargedCase {
     pub rod: ChargedRod,
     /// Processor seconds of all charges, those before a checkpoint included.
     pub cpu_seconds: f64,
-    /// Elastic energy of the image that was charged too and not kept, in E_0; none if only one was or it did not come to its end.
+    /// Elastic energy of the image that was charged too and not kept, in E_0; none if only one was or it did not finish.
     pub energy_other_image: Option<f64>,
 }
 
@@ -233,7 +233,7 @@ fn follow(
     }))
 }
 
-/// Why a case did not come to its end.
+/// Why a case did not finish.
 fn failure(charged: &ChargedRod, runs: &[CutResults]) -> Option<String> {
     let stop = &charged.record().report.stop;
     if !stop.is_success() {

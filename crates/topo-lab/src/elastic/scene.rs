@@ -17,7 +17,7 @@ use super::own_term::OwnTerm;
 use crate::LabError;
 use crate::goal::Goal;
 use crate::preset::Preset;
-use crate::scene::{Axis, Numbers, product};
+use crate::scene::{Axis, Numbers, SceneFault, product};
 use topo_analysis::TimelineSettings;
 
 /// An elastic experiment: which knots, how twisted, how cut, how accurately.
@@ -168,13 +168,9 @@ impl ElasticScene {
                 vec![table.get(name)?.name.clone()]
             };
             if let Some(twice) = meant.iter().find(|knot| !seen.insert((*knot).clone())) {
-                return Err(LabError::SceneValue {
-                    path: PathBuf::from(&self.folder),
-                    line: None,
-                    key: "rod.knot".to_owned(),
-                    value: name.clone(),
-                    remedy: format!("{twice} is there already: name each knot once"),
-                });
+                let remedy = format!("{twice} is there already: name each knot once");
+                let fault = SceneFault::of_file(Path::new(&self.folder), name, remedy);
+                return Err(fault.key("rod.knot").into());
             }
             names.extend(meant);
         }

@@ -168,6 +168,10 @@ impl Experiment for Rods<'_> {
         print::HEADER.to_owned()
     }
 
+    fn legend(&self) -> &'static [&'static str] {
+        print::LEGEND
+    }
+
     fn line(&self, row: &SweepRow) -> String {
         print::line(row)
     }
@@ -286,7 +290,7 @@ mod tests {
     }
 
     #[test]
-    fn what_an_earlier_run_left_is_told_apart_and_computed_again() {
+    fn what_an_earlier_run_left_is_distinguished_and_computed_again() {
         let table = KnotTable::builtin();
         let scene = ElasticScene::parse(SCENE, Path::new("scene.toml")).unwrap();
         let folder = tempfile::tempdir().unwrap();
@@ -409,7 +413,7 @@ mod tests {
     }
 
     /// Stopped inside the charge and inside the discharge of a rod: its checkpoint stays, the next run goes on from it, and a finished
-    /// case leaves none behind. A checkpoint that is damaged is reported, and the case begun anew.
+    /// case leaves none behind. A checkpoint that is damaged is reported, and the case begun again.
     #[test]
     fn a_rod_that_was_stopped_goes_on() {
         let table = KnotTable::builtin();

@@ -47,7 +47,7 @@ impl Measurement {
     }
 }
 
-/// The times that are compared, that which goals are about last. The late time of a rod hangs on ties of contacts, and two
+/// The times that are compared, that which goals are about last. The late time of a rod depends on ties of contacts, and two
 /// resolutions may agree in it by chance.
 fn times(system: System) -> &'static [&'static str] {
     match system {

@@ -120,8 +120,8 @@ pub fn table_hash(table: &str) -> String {
 }
 
 fn stale(record: Option<&Record>, content: &str, results: u32) -> Option<String> {
-    const TABLE: &str = "measure it anew with `cargo xtask tradeoff --quality standard --record`";
-    const FACTOR: &str = "measure it anew with `cargo xtask tradeoff --set factor --record`";
+    const TABLE: &str = "measure it again with `cargo xtask tradeoff --quality standard --record`";
+    const FACTOR: &str = "measure it again with `cargo xtask tradeoff --set factor --record`";
     let Some(record) = record else {
         return Some(format!(
             "the table of settings says nothing of its origin: {TABLE}"
@@ -166,7 +166,7 @@ mod tests {
         }
     }
 
-    /// Fails when the results move on and the tables do not: measure them anew (docs/tradeoff.md says how).
+    /// Fails when the results move on and the tables do not: measure them again (docs/tradeoff.md says how).
     #[test]
     fn the_recorded_tables_are_of_the_present_results() {
         for table in Measured::ALL {

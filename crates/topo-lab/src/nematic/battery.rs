@@ -2,12 +2,14 @@
 
 use std::path::Path;
 
+use super::file;
 use super::identity::RESULTS_VERSION;
 use super::probe::COLLOID_PROBE;
 use super::scene::NematicScene;
 use crate::LabError;
 use crate::battery::{Battery, Scene};
 use crate::cost::Probe;
+use crate::scene::{Keys, SceneFault};
 
 /// Charged colloids in a nematic.
 #[derive(Debug, Clone, Copy)]
@@ -40,5 +42,17 @@ impl Battery for Colloid {
 
     fn parse(&self, text: &str, path: &Path) -> Result<Box<dyn Scene>, LabError> {
         Ok(Box::new(NematicScene::parse(text, path)?))
+    }
+
+    fn keys(&self) -> Option<&'static Keys> {
+        Some(file::keys())
+    }
+
+    fn first_scene(&self) -> &'static [(&'static str, &'static str)] {
+        &[("nematic.q", "[2, 5]"), ("nematic.radius", "15.0")]
+    }
+
+    fn faults(&self, text: &str, path: &Path) -> Vec<SceneFault> {
+        NematicScene::faults(text, path)
     }
 }

@@ -12,46 +12,51 @@ use crate::scene::{Document, check_count, repeated, repeated_number};
 /// Most memory of a case where the scene sets no limit, in bytes.
 const MOST_BYTES: u64 = 64_000_000_000;
 
-/// Checks a scene.
-///
-/// # Errors
-/// File, line, key, value and what would be right.
-pub(super) fn check(scene: &NematicScene, document: &Document<'_>) -> Result<(), LabError> {
+/// What is refused of a scene.
+pub(super) fn faults(scene: &NematicScene, document: &Document<'_>) -> Vec<LabError> {
     let refuse = |e| refused(document, e);
-    check_windings(scene, document)?;
+    let mut faults = Vec::new();
+    let mut see = |checked: Result<(), LabError>| faults.extend(checked.err());
+    see(check_windings(scene, document));
     let flows = match (&scene.flow, &scene.flowing) {
         (Some(_), Some(_)) => 2,
         _ => 1,
     };
     let outer = [("nematic.q", scene.charges.len().max(1)), ("flow.q", flows)];
-    check_count(document, &outer, &scene.axes)?;
-    scene.accuracy.checked().map_err(refuse)?;
-    scene.charge.check().map_err(refuse)?;
+    if let Err(too_many) = check_count(document, &outer, &scene.axes) {
+        see(Err(too_many));
+        return faults;
+    }
+    see(scene.accuracy.checked().map(drop).map_err(refuse));
+    see(scene.charge.check().map_err(refuse));
     if let Some(x) = repeated_number(&scene.charge.seeds) {
-        return Err(repeated(document, "charge.seeds", x));
+        see(Err(repeated(document, "charge.seeds", x)));
     }
-    let to = &scene.switch.to;
-    if !scene.nematic.particle && *to != SwitchTarget::Keep {
-        let remedy =
-            "without a particle there is no anchoring to switch: write `to = \"keep\"` in [switch]";
-        let key = match document.has("switch.to") {
-            true => "switch.to",
-            false => "nematic.particle",
-        };
-        return Err(document.wrong(key, document.written(key), remedy));
-    }
-    scene.switch.check(scene.nematic.particle).map_err(refuse)?;
-    scene.discharge.check().map_err(refuse)?;
-    if scene.discharge.flow.is_some() {
-        return Err(document.wrong("discharge.flow", "given", "write the table [flow] instead"));
-    }
-    for case in scene.cases() {
-        check_case(scene, &case, document)?;
-    }
+    see(check_switch(scene, document));
+    see(scene.discharge.check().map_err(refuse));
+    let cases = scene.cases();
+    see(cases
+        .iter()
+        .try_for_each(|case| check_case(scene, case, document)));
     for (key, reason) in idle(scene) {
-        document.idle(key, reason)?;
+        see(document.idle(key, reason));
     }
-    Ok(())
+    faults
+}
+
+fn check_switch(scene: &NematicScene, document: &Document<'_>) -> Result<(), LabError> {
+    let has_particle = scene.nematic.particle;
+    if has_particle || scene.switch.to == SwitchTarget::Keep {
+        let checked = scene.switch.check(has_particle);
+        return checked.map_err(|e| refused(document, e));
+    }
+    let remedy =
+        "without a particle there is no anchoring to switch: write `to = \"keep\"` in [switch]";
+    let key = match document.has("switch.to") {
+        true => "switch.to",
+        false => "nematic.particle",
+    };
+    Err(document.wrong(key, document.written(key), remedy))
 }
 
 fn check_windings(scene: &NematicScene, document: &Document<'_>) -> Result<(), LabError> {

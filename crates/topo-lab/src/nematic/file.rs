@@ -22,8 +22,11 @@
 //! `budget = "10 min"`.
 
 use std::path::Path;
+use std::sync::OnceLock;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use serde_json::json;
 use topo_nematic::{
     ChargeSettings, DischargeSettings, FlowParameters, Material, NematicAccuracy,
     NematicParameters, SwitchSettings,
@@ -35,24 +38,59 @@ use super::keys::{COLLOID_KEYS, SPACING};
 use super::scene::NematicScene;
 use crate::LabError;
 use crate::goal::{Goal, GoalOr, budget};
-use crate::scene::{BesideQ, Document, axes, folder_of, numbers, put_axes, read_text, remove};
+use crate::scene::{
+    BesideQ, Document, Keys, SceneFault, axes, folder_of, numbers, numbers_node, put_axes,
+    read_text, remove,
+};
 
-/// A file, its windings left out: those of the colloid, and those that have flow besides all without.
-#[derive(Debug, Deserialize)]
+/// A scene of colloids; its windings left out: those of the colloid, and those that have flow besides all without.
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct File {
+    /// The colloid.
     nematic: BesideQ<NematicParameters>,
+    /// The nematic liquid.
     material: Option<Material>,
+    /// The charge: relaxation with the anchoring.
     #[serde(default)]
     charge: ChargeSettings,
+    /// The switch of the anchoring.
     #[serde(default)]
     switch: SwitchSettings,
+    /// The discharge after the switch.
     #[serde(default)]
     discharge: DischargeSettings,
+    /// The flow; without the table none is modelled.
     flow: Option<BesideQ<FlowParameters>>,
+    /// Largest relative error of t99.9, instead of the spacing and the table [accuracy].
     #[serde(default)]
+    #[schemars(extend("x-unit" = "1", "x-default" = "settings"))]
     accuracy: GoalOr<NematicAccuracy>,
+    /// Time that all cases may take, instead of the spacing and the table [accuracy].
+    #[schemars(extend("x-default" = "none"), example = "10 min")]
     budget: Option<String>,
+}
+
+/// The keys of these files.
+pub(super) fn keys() -> &'static Keys {
+    static KEYS: OnceLock<Keys> = OnceLock::new();
+    KEYS.get_or_init(|| {
+        let windings = |about: &str, default: &str, example: u32| {
+            let node = numbers_node(json!({ "type": "number", "minimum": 1, "maximum": MOST_TURNS, "x-form": format!("a whole number from 1 to {MOST_TURNS}") }));
+            let mut node = node.to_value();
+            node["description"] = json!(about);
+            node["x-unit"] = json!("1");
+            node["x-default"] = json!(default);
+            node["examples"] = json!([example]);
+            node
+        };
+        let q = "Topological charges q of the particle, instead of a pattern.";
+        let flowing = "Charges whose cases are computed with flow, besides all without.";
+        Keys::of::<File>()
+            .with("nematic.q", windings(q, "the pattern", 5))
+            .with("flow.q", windings(flowing, "all cases flow", 2))
+            .with_several(&COLLOID_KEYS)
+    })
 }
 
 impl File {
@@ -105,6 +143,13 @@ impl NematicScene {
     pub fn parse(text: &str, path: &Path) -> Result<Self, LabError> {
         let document = Document::new(text, path)?;
         document.idle("knots", "a colloid has no knots: leave it out")?;
+        keys().check(&document)?;
+        let (scene, faults) = Self::described(&document)?;
+        faults.into_iter().next().map_or(Ok(scene), Err)
+    }
+
+    /// The scene of a file whose keys have values of the right form, and what is refused of it.
+    fn described(document: &Document<'_>) -> Result<(Self, Vec<LabError>), LabError> {
         let both = |one: &str, other: &str, remedy: &str| match document.has(other) {
             true => document.idle(one, remedy),
             false => Ok(()),
@@ -112,18 +157,18 @@ impl NematicScene {
         both("nematic.pattern", "nematic.q", "keep either q or pattern")?;
         let remedy = "[material] is there too: keep one of them";
         both("nematic.material", "material", remedy)?;
-        let (plain, axes) = axes(&document, &COLLOID_KEYS, |text| {
+        let (plain, axes) = axes(document, &COLLOID_KEYS, |text| {
             Ok(document.read::<File>(text)?.case())
         })?;
-        let charges = windings(&document, "nematic.q")?;
-        let flowing = windings(&document, "flow.q")?;
+        let charges = windings(document, "nematic.q")?;
+        let flowing = windings(document, "flow.q")?;
         let mut file: File = document.read(&plain)?;
         let flow = file.flow.take().map(|BesideQ(flow)| flow);
         let (accuracy, goal) = std::mem::take(&mut file.accuracy)
             .with_budget(file.budget.as_deref())
             .map_err(|(key, text, remedy)| document.wrong(key, text, remedy))?;
         let scene = Self {
-            folder: folder_of(path)?,
+            folder: folder_of(document.path())?,
             charges: charges.unwrap_or_default(),
             flowing,
             charge: file.charge.clone(),
@@ -136,8 +181,15 @@ impl NematicScene {
             goal,
             nematic: file.case().nematic,
         };
-        check::check(&scene, &document)?;
-        Ok(scene)
+        let faults = check::faults(&scene, document);
+        Ok((scene, faults))
+    }
+
+    /// All that is wrong with a text, as far as it can be seen without a run.
+    pub(super) fn faults(text: &str, path: &Path) -> Vec<SceneFault> {
+        keys().faults_of_text(text, path, |document| {
+            Self::described(document).map_or_else(|e| vec![e], |(_, faults)| faults)
+        })
     }
 
     /// The scene as the text of a file with every value written out; [`parse`](Self::parse) gives the same scene back.

@@ -73,7 +73,7 @@ fn field(case: &mut NematicCase) -> Option<&mut ExternalField> {
 pub(super) const SPACING: &str = "nematic.spacing";
 
 /// Windings run slowest, then these; of cases with and without flow, those with it come second.
-pub(super) const COLLOID_KEYS: [Key; 24] = [
+pub(crate) const COLLOID_KEYS: [Key; 24] = [
     number(
         "nematic.radius",
         |c| Some(c.nematic.radius),

@@ -296,7 +296,7 @@ mod tests {
         let first = buckling_study(&[case], &[], &never, &tell).unwrap();
         assert!(first[0].has_converged() && !first[0].is_buckled());
         assert!((first[0].thickness, first[0].boundary) == (20.0, Boundary::NodeMask));
-        // marked, to be replaced by a row made anew
+        // marked, to be replaced by a row made again
         let mut known = first.clone();
         known[0].f_charged = 1.0;
         let both = buckling_study(&[case, finer], &known, &never, &tell).unwrap();

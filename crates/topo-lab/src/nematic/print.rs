@@ -5,6 +5,12 @@ use topo_analysis::{NematicRow, nematic_resonance};
 pub(super) const HEADER: &str =
     "  q flow  F charged  F after  order  ring/R mode     t50     t90     t99   t99.9  CPU s   MB";
 
+pub(super) const LEGEND: &[&str] = &[
+    "F: free energy in L xi_N, charged and after the switch; order: order parameter, above zero where the ring is buckled",
+    "ring/R: mean radius of the ring; mode: its strongest mode of height",
+    "times after the switch in tau_N = xi_N^2/(Gamma L), R^2/(Gamma L) is (R/xi_N)^2 of them; t50: 50 % of the energy after it is released",
+];
+
 pub(super) fn line(r: &NematicRow) -> String {
     let time = |t: Option<f64>| t.map_or_else(|| format!("{:>7}", "-"), |t| format!("{t:7.2}"));
     format!(
@@ -27,7 +33,7 @@ pub(super) fn line(r: &NematicRow) -> String {
     )
 }
 
-/// What the discharge times of many windings tell, without flow and with it.
+/// What the discharge times of many windings say, without flow and with it.
 pub(super) fn resonances(all: &[NematicRow]) -> Vec<String> {
     let mut lines = Vec::new();
     for flow in [topo_analysis::Flow::Off, topo_analysis::Flow::On] {

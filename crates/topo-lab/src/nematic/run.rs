@@ -147,7 +147,7 @@ impl ColloidRun<'_> {
         Ok(is_over.then_some((run, kept)))
     }
 
-    /// What a run before has kept in `place`; where that is nothing, the discharge begins anew.
+    /// What a run before has kept in `place`; where that is nothing, the discharge begins again.
     fn kept_before(&self, place: &Path, discharge: &Path) -> Result<Snapshots, LabError> {
         let there = place.exists();
         let kept: Snapshots = load_checkpoint(place, KEPT).unwrap_or_default();
@@ -278,7 +278,7 @@ impl ColloidRun<'_> {
     }
 }
 
-/// Why a run did not come to its end.
+/// Why a run did not finish.
 fn failure(charged: &ChargedNematic, run: &Discharge) -> Option<String> {
     let (charge, stop) = (charged.report(), &run.record.report.stop);
     if !charge.is_converged() {

@@ -107,6 +107,10 @@ impl Experiment for NematicScene {
         print::HEADER.to_owned()
     }
 
+    fn legend(&self) -> &'static [&'static str] {
+        print::LEGEND
+    }
+
     fn line(&self, row: &NematicRow) -> String {
         print::line(row)
     }
@@ -260,7 +264,7 @@ mod tests {
     }
 
     #[test]
-    fn a_damaged_checkpoint_is_told_and_the_case_begun_anew() {
+    fn a_damaged_checkpoint_is_reported_and_the_case_begun_anew() {
         let scene = NematicScene::parse(SCENE, Path::new("scene.toml")).unwrap();
         let folder = tempfile::tempdir().unwrap();
         let calm = run_nematic_sweep(&scene, &settings(folder.path(), 1), &|_| {}).unwrap();

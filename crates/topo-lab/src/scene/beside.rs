@@ -1,8 +1,10 @@
 //! A table that holds the key `q` beside the settings of a structure, with places in messages.
 
+use std::borrow::Cow;
 use std::fmt;
 use std::marker::PhantomData;
 
+use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::de::value::{MapAccessDeserializer, StringDeserializer};
 use serde::de::{DeserializeSeed, IgnoredAny, IntoDeserializer, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer};
@@ -26,6 +28,17 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for BesideQ<T> {
             }
         }
         deserializer.deserialize_map(Settings(PhantomData))
+    }
+}
+
+// the key `q` is added with what it means in the table
+impl<T: JsonSchema> JsonSchema for BesideQ<T> {
+    fn schema_name() -> Cow<'static, str> {
+        T::schema_name()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        generator.subschema_for::<T>()
     }
 }
 

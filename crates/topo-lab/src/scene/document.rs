@@ -8,6 +8,8 @@ use serde::de::DeserializeOwned;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
+use super::fault::{LEFT_OUT, SceneFault};
+use super::syntax;
 use crate::LabError;
 
 /// Longest value that a message repeats.
@@ -35,15 +37,40 @@ impl<'a> Document<'a> {
     /// Reads the tables of a text; `path` names it in messages.
     ///
     /// # Errors
-    /// A text that is not TOML, with line and column.
+    /// A text that is not TOML, with the place.
     pub fn new(text: &'a str, path: &'a Path) -> Result<Self, LabError> {
-        let wrong = |e: toml::de::Error| not_a_scene(path, &e);
-        Ok(Self {
-            text,
-            path,
-            spans: DeTable::parse(text).map_err(wrong)?.into_inner(),
-            values: toml::from_str(text).map_err(wrong)?,
+        Self::read_tables(text, path).map_err(|faults| {
+            let first = faults.into_iter().next();
+            first.map_or_else(|| syntax::unreadable(path).into(), LabError::from)
         })
+    }
+
+    /// Reads the tables of a text, or says all that is no TOML in it.
+    pub(crate) fn read_tables(text: &'a str, path: &'a Path) -> Result<Self, Vec<SceneFault>> {
+        let (spans, errors) = DeTable::parse_recoverable(text);
+        if !errors.is_empty() {
+            let faults = errors.iter().map(|e| syntax::fault(text, path, e));
+            let mut faults: Vec<SceneFault> = faults.collect();
+            faults.sort_by_key(SceneFault::place);
+            return Err(faults);
+        }
+        let spans = spans.into_inner();
+        match toml::from_str(text) {
+            Ok(values) => Ok(Self {
+                text,
+                path,
+                spans,
+                values,
+            }),
+            Err(e) => {
+                let place = e.span().unwrap_or_default();
+                let key = key_at(&spans, &place).unwrap_or_default();
+                let found = short(text.get(place.clone()).unwrap_or_default());
+                Err(vec![
+                    syntax::too_large(path, found).key(key).at(text, &place),
+                ])
+            }
+        }
     }
 
     /// The file's name.
@@ -64,6 +91,11 @@ impl<'a> Document<'a> {
         };
         self.find_exactly(key)
             .or_else(|| self.find_exactly(&inside()?))
+    }
+
+    /// The tables with their places.
+    pub(crate) fn spans(&self) -> &DeTable<'a> {
+        &self.spans
     }
 
     fn find_exactly(&self, key: &str) -> Option<Found<'_>> {
@@ -94,32 +126,60 @@ impl<'a> Document<'a> {
         self.find(key).is_some()
     }
 
-    /// The line of a dotted key, or of the nearest table around it that the file has.
-    pub fn line(&self, key: &str) -> Option<usize> {
+    /// Where a dotted key stands, or the nearest table around it that the file has.
+    fn around(&self, key: &str) -> Option<Range<usize>> {
         let mut key = key;
         loop {
-            if let Some(found) = self.find(key) {
-                let before = self.text.get(..found.key.start)?;
-                return Some(1 + before.matches('\n').count());
+            match self.find(key) {
+                Some(found) => return Some(found.key),
+                None => key = key.rsplit_once('.')?.0,
             }
-            key = key.rsplit_once('.')?.0;
         }
+    }
+
+    /// The line of a dotted key, or of the nearest table around it that the file has.
+    pub fn line(&self, key: &str) -> Option<usize> {
+        let before = self.text.get(..self.around(key)?.start)?;
+        Some(1 + before.matches('\n').count())
     }
 
     /// What is written after a key, on one line and not too long.
     pub fn written(&self, key: &str) -> String {
-        let found = self.find(key).and_then(|f| self.text.get(f.value));
-        short(found.unwrap_or("(left out)"))
+        match self.find(key) {
+            Some(found) => self.source(&found.value),
+            None => LEFT_OUT.to_owned(),
+        }
     }
 
-    /// The error for a value that cannot be.
+    /// What is written at a place, on one line and not too long.
+    pub(crate) fn source(&self, place: &Range<usize>) -> String {
+        short(self.text.get(place.clone()).unwrap_or_default())
+    }
+
+    /// The error for a value that cannot be; of a list, the element is marked.
     pub fn wrong(&self, key: &str, value: impl Display, remedy: impl Into<String>) -> LabError {
-        LabError::SceneValue {
-            path: self.path.to_owned(),
-            line: self.line(key),
-            key: key.to_owned(),
-            value: short(&value.to_string()),
-            remedy: remedy.into(),
+        let value = value.to_string();
+        let place = self.find(key).map(|found| {
+            let is_it = |place: &&Range<usize>| is_same(&self.source(place), &value);
+            let element = found.elements.iter().find(is_it).cloned();
+            element.unwrap_or(found.value)
+        });
+        self.fault(key, &value, remedy.into(), place.as_ref())
+            .into()
+    }
+
+    /// A fault of a value at a place, or of the table around its key where it has none.
+    pub(crate) fn fault(
+        &self,
+        key: &str,
+        found: &str,
+        expected: String,
+        place: Option<&Range<usize>>,
+    ) -> SceneFault {
+        let fault = SceneFault::of_file(self.path, short(found), expected).key(key);
+        match place.cloned().or_else(|| self.around(key)) {
+            Some(place) => fault.at(self.text, &place),
+            None => fault,
         }
     }
 
@@ -134,20 +194,43 @@ impl<'a> Document<'a> {
         Ok(())
     }
 
-    /// Reads this text or one made of it.
+    /// Reads this text or one made of it, with the same keys on the same lines.
     ///
     /// # Errors
-    /// An unknown key or a value of the wrong type, with line and column.
+    /// What the type refuses, with the place; what does not fit the [`Keys`](crate::Keys) of the file is better refused by them.
     pub fn read<T: DeserializeOwned>(&self, text: &str) -> Result<T, LabError> {
-        toml::from_str(text).map_err(|e| not_a_scene(self.path, &e))
+        toml::from_str(text).map_err(|e| {
+            let tables = DeTable::parse_recoverable(text).0.into_inner();
+            let key = e.span().and_then(|place| key_at(&tables, &place));
+            match key {
+                Some(key) => self.wrong(&key, self.written(&key), e.message()),
+                None => SceneFault::of_file(self.path, "the scene", e.message()).into(),
+            }
+        })
     }
 }
 
-fn not_a_scene(path: &Path, error: &toml::de::Error) -> LabError {
-    LabError::Scene {
-        path: path.to_owned(),
-        message: error.to_string(),
+/// Whether a value is the one written.
+fn is_same(written: &str, value: &str) -> bool {
+    let number = |text: &str| text.parse::<f64>().ok();
+    match (number(written), number(value)) {
+        (Some(x), Some(y)) => x == y || (x.is_nan() && y.is_nan()),
+        _ => written.trim_matches('"') == value.trim_matches('"'),
     }
+}
+
+/// The dotted key at a place or, of a value, the innermost around it.
+fn key_at(table: &DeTable<'_>, place: &Range<usize>) -> Option<String> {
+    let holds = |span: &Range<usize>| span.start <= place.start && place.end <= span.end;
+    table.iter().find_map(|(name, value)| {
+        let inside = value.get_ref().as_table();
+        match inside.and_then(|table| key_at(table, place)) {
+            Some(inner) => Some(format!("{}.{inner}", name.get_ref())),
+            None => {
+                (holds(&name.span()) || holds(&value.span())).then(|| name.get_ref().to_string())
+            }
+        }
+    })
 }
 
 fn short(text: &str) -> String {
@@ -161,10 +244,11 @@ fn short(text: &str) -> String {
 
 /// The text of a scene file.
 pub(crate) fn read_text(path: &Path) -> Result<String, LabError> {
-    std::fs::read_to_string(path).map_err(|source| LabError::Unreadable {
+    let bytes = std::fs::read(path).map_err(|source| LabError::Unreadable {
         path: path.to_owned(),
         source,
-    })
+    })?;
+    String::from_utf8(bytes).map_err(|e| syntax::no_text(path, &e).into())
 }
 
 #[cfg(test)]
@@ -197,7 +281,12 @@ mod tests {
             .to_string();
         assert_eq!(
             message,
-            "s.toml, line 3: nematic.radius = -1 is not possible: be positive"
+            "s.toml, line 3: nematic.radius = -1 is not possible: be positive\n --> s.toml:3:2\n  |\n3 | [nematic]\n  |  ^^^^^^^"
         );
+        // of a list, the element
+        let message = document
+            .wrong("nematic.anchoring.weak", 2.5, "be")
+            .to_string();
+        assert!(message.contains("--> s.toml:6:2\n"), "{message}");
     }
 }

@@ -1,10 +1,14 @@
 //! Lists and ranges of numbers in a scene file.
 
+use std::borrow::Cow;
 use std::fmt::Display;
 
+use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Deserialize, Serialize};
+use serde_json::json;
 
 use super::document::Document;
+use super::keys;
 use crate::LabError;
 
 /// Most cases of a scene, and most values of a key.
@@ -50,6 +54,16 @@ impl Numbers {
     }
 }
 
+impl JsonSchema for Numbers {
+    fn schema_name() -> Cow<'static, str> {
+        "Numbers".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        keys::numbers(json!({ "type": "number" }))
+    }
+}
+
 /// A number as short as rounding has left it: 0.3 for 0.30000000000000004, of numbers up to `scale`.
 fn rounded(x: f64, scale: f64) -> f64 {
     let short = format!("{x:.12e}").parse().unwrap_or(x);
@@ -68,7 +82,7 @@ impl Numbers {
         value: &toml::Value,
     ) -> Result<Self, LabError> {
         Self::deserialize(value.clone()).map_err(|_| {
-            let remedy = "write a number, a list of numbers, or { from = 1, to = 2, n = 3 }";
+            let remedy = "write a number, a list of numbers or { from = 1, to = 2, n = 3 }";
             document.wrong(key, document.written(key), remedy)
         })
     }

@@ -10,7 +10,7 @@ use topo_core::{CpuClock, Interrupt};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Ending {
-    /// It came to its end.
+    /// It finished.
     Converged,
     /// It stopped with a reason.
     Stopped,
@@ -50,7 +50,7 @@ pub struct StabilityRow {
 }
 
 impl StabilityRow {
-    /// Whether it came to its end.
+    /// Whether it finished.
     pub fn has_converged(&self) -> bool {
         self.outcome == Ending::Converged
     }

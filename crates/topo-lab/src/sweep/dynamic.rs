@@ -88,6 +88,9 @@ impl<E: Experiment> Swept for Finished<'_, E> {
             lines.extend(warnings.map(|warning| format!("       warning: {warning}")));
         }
         lines.extend(self.experiment.findings(&self.report.rows));
+        if !self.report.rows.is_empty() {
+            lines.extend(self.experiment.legend().iter().map(ToString::to_string));
+        }
         lines
     }
 

@@ -103,6 +103,11 @@ pub trait Experiment: Sync {
     /// The line above the rows of the printed table.
     fn header(&self) -> String;
 
+    /// Lines below the printed table that say what its columns are, with their units.
+    fn legend(&self) -> &'static [&'static str] {
+        &[]
+    }
+
     /// A row of the printed table, its warnings left out.
     fn line(&self, row: &Self::Row) -> String;
 

@@ -8,7 +8,7 @@ use crate::LabError;
 use crate::folder::forget_file;
 use topo_analysis::write_table;
 
-/// A case without a result, or whose run did not come to its end.
+/// A case without a result, or whose run did not finish.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct FailedCase {
     /// Its folder.

@@ -32,7 +32,7 @@ pub struct Place<'a> {
     pub is_alone: bool,
     /// Processor seconds that it is expected to take on the models' machine.
     pub expected: f64,
-    /// Told where it is.
+    /// Called with what it does.
     pub progress: &'a (dyn Fn(Event<'_>) + Sync),
 }
 
@@ -67,7 +67,7 @@ impl<'a> Place<'a> {
         });
     }
 
-    /// Runs the case; where a checkpoint cannot be used, that is reported, all checkpoints are forgotten, and the case begins anew.
+    /// Runs the case; where a checkpoint cannot be used, that is reported, all checkpoints are forgotten, and the case begins again.
     pub(crate) fn or_anew<T>(
         &self,
         attempt: impl Fn() -> Result<T, LabError>,
@@ -82,7 +82,7 @@ impl<'a> Place<'a> {
         }
     }
 
-    /// Opens the folder for the files of a case that has come to its end; what is there of an earlier run is replaced.
+    /// Opens the folder for the files of a case that has finished; what is there of an earlier run is replaced.
     ///
     /// # Errors
     /// A folder that cannot be written to.

@@ -21,7 +21,7 @@ pub(super) type Run = dyn Fn(bool, &Interrupt) -> Result<Taken, LabError> + Send
 pub(super) struct Term {
     pub system: &'static str,
     pub name: &'static str,
-    /// Told of both scenes.
+    /// reported of both scenes.
     pub quantity: String,
     pub run: Box<Run>,
 }

@@ -23,7 +23,7 @@ const TOLERANCES: [f64; 3] = [1e-3, 1e-4, 3e-5];
 /// The reference of these.
 const REFERENCE_SPACING: f64 = 0.75;
 const REFERENCE_TOLERANCE: f64 = 1e-5;
-/// Rings that buckle at this radius, where late times hang on how far: kept apart from the rest.
+/// Rings that buckle at this radius, where late times depend on how far: kept apart from the rest.
 const BUCKLED: [i32; 1] = [11];
 /// Charges followed with flow.
 const FLOWING: [i32; 1] = [5];

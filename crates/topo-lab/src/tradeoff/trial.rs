@@ -111,7 +111,7 @@ pub struct TradeoffWork<'a> {
     pub interrupt: &'a Interrupt,
     /// How bytes are measured.
     pub peak_bytes: PeakBytes<'a>,
-    /// Told the number of runs to come, then the name of each that is finished with its rows.
+    /// Reported the number of runs to come, then the name of each that is finished with its rows.
     pub report: &'a (dyn Fn(TradeoffEvent<'_>) + Sync),
 }
 

@@ -20,10 +20,10 @@ pub struct ChargedNematic {
 }
 
 impl NematicBattery {
-    /// Lets the nematic relax with the pattern on the particle.
+    /// Relaxes the nematic with the pattern on the particle.
     ///
-    /// The state that is left is checked: a saddle is left by a kick along its unstable mode, and relaxed again. A charge that is
-    /// interrupted or reaches its limit of steps keeps what it has, unchecked, and says so in its report.
+    /// The relaxed state is checked: from a saddle it is kicked along the unstable mode and relaxed again. A charge that is
+    /// interrupted or reaches its limit of steps returns what it has, unchecked; its report says so.
     ///
     /// # Errors
     /// A setting out of range, or a checkpoint that cannot be used.
@@ -35,7 +35,7 @@ impl NematicBattery {
         self.relax(settings, None, hooks, true)
     }
 
-    /// Lets the nematic relax from a given state; the seeds of the settings are not used.
+    /// Relaxes the nematic from a given state; the seeds of the settings are not used.
     ///
     /// # Errors
     /// As [`charge`](Self::charge), and a state of another grid.
@@ -54,7 +54,7 @@ impl NematicBattery {
         self.relax(&once, Some(start), hooks, true)
     }
 
-    /// Takes a given state as charged, as it is.
+    /// Takes a given state as the charged one, without relaxing it.
     ///
     /// # Errors
     /// A state of another grid.
@@ -111,7 +111,7 @@ impl NematicBattery {
         })
     }
 
-    /// The start field, relaxed on a coarse grid first if asked for and possible.
+    /// The start field, relaxed on a coarse grid first if requested and possible.
     fn charge_start(
         &self,
         settings: &ChargeSettings,
@@ -171,7 +171,7 @@ impl ChargedNematic {
         &self.report
     }
 
-    /// Energy by part, in L xi_N.
+    /// Energy by part, in L ξ_N.
     pub fn energy(&self) -> &EnergyParts {
         &self.report.energy
     }
@@ -181,7 +181,7 @@ impl ChargedNematic {
         &self.report.order
     }
 
-    /// The defect ring: the line of lowest order around the particle, up to the order `threshold`.
+    /// The defect ring: the line of lowest order around the particle, where the order is below `threshold`.
     pub fn ring(&self, threshold: f64) -> Option<Ring> {
         ring(&self.state, threshold)
     }

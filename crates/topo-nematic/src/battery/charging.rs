@@ -1,4 +1,4 @@
-//! A charge on its way: relaxations from all start fields, the check of the best state, kicks out of saddles.
+//! A charge in progress: relaxations from all start fields, the check of the best state, kicks out of saddles.
 
 mod unfinished;
 

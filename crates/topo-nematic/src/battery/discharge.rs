@@ -1,9 +1,10 @@
 //! Discharging: the nematic relaxes in time after the switch.
 //!
-//! Reading order: `model` (kernel, `ramp` and `flow`, and the account of the energy), `system` (the model with `crate::stabilised`, the
-//! integrator, which holds the field), `observer` (what is recorded), `run` (the loop), `resume` (what a checkpoint keeps). Steps are
-//! made by [`topo_core::TimeStepping`], as those of rods; the rest is no [`topo_core::Simulation`], whose models give rates as flat
-//! vectors in double precision, where this one fuses them with the stages and its flow sees every trial.
+//! Reading order: `model` (kernel, `ramp` and `flow`, and the account of the energy), `system` (the model with
+//! `crate::stabilised`, the integrator, which holds the field), `observer` (what is recorded), `run` (the loop), `resume` (what
+//! a checkpoint keeps). Steps are made by [`topo_core::TimeStepping`], as those of rods; it is not a [`topo_core::Simulation`],
+//! whose models give rates as flat vectors in double precision: this one computes them within the stages, and its flow sees
+//! every trial.
 
 mod flow;
 mod flow_direction;
@@ -14,6 +15,7 @@ mod resume;
 mod run;
 mod system;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use topo_core::{StopReason, finite, in_range, positive};
 
@@ -23,22 +25,29 @@ use super::record::RunRecord;
 use super::switch::SwitchedNematic;
 use crate::{FlowParameters, NematicError, NematicState, Precision};
 
-/// How far a discharge is followed and how often it is looked at.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// How far a discharge is followed and how often it is sampled.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct DischargeSettings {
-    /// Share of the energy stored after the switch, above that of the final state, whose release ends the run.
+    /// The run ends when this share of the stored energy is released: of the energy after the switch, above that of the final
+    /// state.
+    #[schemars(range(min = 1e-6, max = 0.999_999_999), extend("x-unit" = "1"), example = 0.99)]
     pub until_released: f64,
-    /// Longest time followed, in R²/(Gamma L).
+    /// Longest time followed, in R²/(Γ L).
+    #[schemars(extend("x-unit" = "R²/(Γ L)", "exclusiveMinimum" = 0), example = 5.0)]
     pub longest: f64,
-    /// First output time after the switch, in R²/(Gamma L).
+    /// First output time after the switch, in R²/(Γ L).
+    #[schemars(extend("x-unit" = "R²/(Γ L)", "exclusiveMinimum" = 0), example = 1e-3)]
     pub first_output: f64,
-    /// Output times a decade.
+    /// Output times per decade.
+    #[schemars(range(min = 1e-3, max = 1e6), extend("x-unit" = "1"), example = 16.0)]
     pub outputs_per_decade: f64,
     /// Order below which a cell belongs to the defect ring.
+    #[schemars(extend("x-unit" = "1"), example = 0.3)]
     pub ring_threshold: f64,
     /// The flow; leave it out and none is modelled.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(skip)]
     pub flow: Option<FlowParameters>,
 }
 
@@ -80,16 +89,16 @@ impl DischargeSettings {
     }
 }
 
-/// A discharge: what the switch took, and how the rest was released.
+/// A discharge: what the switch removed, and how the rest was released.
 #[derive(Debug, Clone)]
 pub struct Discharge {
-    /// Energy that the switch itself removed, in L xi_N.
+    /// Energy that the switch itself removed, in L ξ_N.
     pub removed: f64,
-    /// Energy just after the switch, in L xi_N.
+    /// Energy just after the switch, in L ξ_N.
     pub start: f64,
     /// The state of equilibrium after the switch: released shares count from `start` to its energy.
     pub final_state: FinalState,
-    /// Energy that could be released, `start` less the final energy; none where nothing is stored.
+    /// Energy that can be released, `start` minus the final energy, in L ξ_N; none where nothing is stored.
     pub stored: Option<f64>,
     /// The run.
     pub record: RunRecord,
@@ -98,17 +107,17 @@ pub struct Discharge {
 }
 
 impl Discharge {
-    /// Whether the share asked for was released.
+    /// Whether the requested share was released.
     pub fn is_finished(&self) -> bool {
         matches!(self.record.report.stop, StopReason::Condition(_))
     }
 }
 
 impl SwitchedNematic {
-    /// Lets the nematic go.
+    /// Follows the nematic after the switch.
     ///
-    /// The run ends when the energy is as near to that of the [final state](Self::final_state) as the settings ask for. With moving
-    /// plates or body forces, and nothing stored, only its time ends it.
+    /// The run ends when the requested share of the energy above the [final state](Self::final_state) is released. With moving
+    /// plates or body forces, and with nothing stored, it ends at its longest time.
     ///
     /// # Errors
     /// A setting out of range, a flow that cannot be found at the start, or a checkpoint that cannot be used.

@@ -54,9 +54,9 @@ impl SwitchedNematic {
         Ok(*self.final_state.get_or_init(|| found))
     }
 
-    /// Energy that can be released on the way to `end`, in L xi_N; none if it is not above what a converged charge leaves.
+    /// Energy that can be released on the way to `end`, in L ξ_N; none if it is not above what a converged charge leaves.
     ///
-    /// Negative if the final state lies above the present one, as a ramp of the anchoring can do.
+    /// Negative if the energy of the final state is above the present one, as can happen with a ramp of the anchoring.
     pub fn stored(&self, end: &FinalState) -> Option<f64> {
         Some(self.start() - end.energy)
             .filter(|stored| stored.abs() > nothing(&self.charged.battery))
@@ -120,7 +120,7 @@ impl SwitchedNematic {
     }
 }
 
-/// Energy that counts as none in a cell, in L xi_N.
+/// Energy that counts as none in a cell, in L ξ_N.
 pub(super) fn nothing(battery: &NematicBattery) -> f64 {
     let volume = battery.grid.extent().iter().product::<f64>();
     NOTHING * battery.parameters().material.reference_density().abs() * volume

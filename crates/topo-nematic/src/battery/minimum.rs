@@ -10,16 +10,16 @@ use crate::kernel::run::Kernel;
 /// How the check of a charged state ended.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct MinimumReport {
-    /// Lowest eigenvalue of the Hessian of the energy in the inner product of the gradient flow, in L/xi_N²: a small change along
-    /// its mode decays at Gamma times this.
+    /// Lowest eigenvalue of the Hessian of the energy in the inner product of the gradient flow, in L/ξ_N²: a small change along
+    /// its mode decays at Γ times this.
     pub lowest_eigenvalue: f64,
-    /// Norm of what its mode misses of being one, in L/xi_N².
+    /// Norm of the residual A v − λ v of its mode v, in L/ξ_N².
     pub residual: f64,
-    /// What it says.
+    /// What the eigenvalue means for the state.
     pub state: MinimumState,
     /// Kicks along unstable modes, each followed by a relaxation.
     pub n_kicks: u32,
-    /// Products with the Hessian, each as dear as a step of the relaxation, over all checks.
+    /// Products with the Hessian over all checks, each as expensive as a step of the relaxation.
     pub n_products: u64,
 }
 
@@ -40,7 +40,7 @@ fn state_of(eigenvalue: f64, unit: f64) -> MinimumState {
     }
 }
 
-/// A state that was looked at.
+/// A state that was checked.
 pub(super) struct Check<'a> {
     hessian: Hessian<'a>,
     kernel: &'a Kernel<f64>,
@@ -115,7 +115,7 @@ impl<'a> Check<'a> {
 }
 
 impl Kernel<f64> {
-    /// Decay of the director's slowest mode between strong plates, over Gamma: L π²/L_z².
+    /// Decay of the director's slowest mode between strong plates, over Γ: L π²/L_z².
     fn plate_mode(&self) -> f64 {
         let height = self.domain.grid.extent()[2];
         self.material().elastic_constant * (std::f64::consts::PI / height).powi(2)

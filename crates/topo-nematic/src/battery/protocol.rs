@@ -21,9 +21,9 @@ pub struct Protocol {
 }
 
 impl NematicBattery {
-    /// Charges, switches and discharges. No discharge follows an interrupted charge.
+    /// Charges, switches and discharges. An interrupted charge is not followed by a discharge.
     ///
-    /// The checkpoint file of the hooks, if there is one, is that of the charge; the one of the discharge stands beside it, with
+    /// The checkpoint file of the hooks, if there is one, is that of the charge. That of the discharge is beside it, with
     /// `discharge` as its last extension.
     ///
     /// # Errors

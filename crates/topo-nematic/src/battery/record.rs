@@ -22,13 +22,13 @@ pub(crate) const CHANNELS: [&str; 2] = ["rotation", "viscous"];
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ChargeStop {
-    /// The molecular field is as small as asked.
+    /// The molecular field is below the tolerance.
     Converged,
-    /// The steps allowed were taken.
+    /// The limit of steps was reached.
     StepLimit,
-    /// It was asked to stop.
+    /// It was interrupted.
     Interrupted,
-    /// It was not relaxed: the state was made elsewhere.
+    /// It was not relaxed: the state was given by the caller.
     Adopted,
 }
 
@@ -48,20 +48,21 @@ impl fmt::Display for ChargeStop {
 pub struct ChargeReport {
     /// Why it ended.
     pub stop: ChargeStop,
-    /// Tilt of the start field that led to the state kept.
+    /// Tilt of the start field that led to the state kept, in radians.
     pub seed: f64,
     /// Steps of the relaxation, over all start fields.
     pub n_steps: u64,
-    /// Root mean square of the molecular field at the end.
+    /// Root mean square of the molecular field at the end, in L/ξ_N².
     pub rms_field: f64,
-    /// Energy by part, in L xi_N.
+    /// Energy by part, in L ξ_N.
     pub energy: EnergyParts,
     /// Order parameter of buckling.
     pub order: OrderParameter,
-    /// Whether the state is a minimum, which files keep on its own; none when it was not relaxed to the end, or when its lowest mode was not found.
+    /// Whether the state is a minimum, which files keep separately; none when the relaxation was not finished, or when the
+    /// lowest mode was not found.
     #[serde(skip)]
     pub minimum: Option<MinimumReport>,
-    /// Processor seconds of the calling thread.
+    /// Processor time of the calling thread, in seconds.
     pub cpu_seconds: f64,
     /// Bytes by component.
     pub bytes: ByteAccount,
@@ -83,7 +84,7 @@ pub enum FinalSource {
     Uniform,
     /// The switched state, relaxed under the anchoring and field after the switch.
     Relaxed,
-    /// As `Relaxed`, but the relaxation ended before it had converged: the energy is an upper bound.
+    /// As `Relaxed`, but the relaxation did not converge: the energy is an upper bound.
     Unconverged,
 }
 
@@ -101,7 +102,7 @@ impl FinalSource {
 /// The state of equilibrium under the anchoring and field after a switch.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct FinalState {
-    /// Its energy, in L xi_N.
+    /// Its energy, in L ξ_N.
     pub energy: f64,
     /// How it was found.
     pub source: FinalSource,
@@ -110,31 +111,31 @@ pub struct FinalState {
 /// The nematic at one output time of a discharge.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct NematicSample {
-    /// Time since the switch, in tau_N.
+    /// Time since the switch, in τ_N.
     pub time: f64,
-    /// Energy by part, in L xi_N.
+    /// Energy by part, in L ξ_N.
     pub energy: EnergyParts,
-    /// Dissipated so far by rotation and by viscosity, in L xi_N.
+    /// Dissipated so far by rotation and by viscosity, in L ξ_N.
     pub dissipated: [f64; 2],
     /// Order parameter.
     pub order: OrderParameter,
     /// The defect ring, while there is one.
     pub ring: Option<Ring>,
-    /// Largest speed, in xi_N/tau_N; none without flow.
+    /// Largest speed, in ξ_N/τ_N; none without flow.
     pub max_speed: Option<f64>,
-    /// Correlation of the velocity with the first one looked at, <u(t).u(t_1)>/(|u(t)||u(t_1)|) over the fluid: below zero the flow has
-    /// changed its direction; none without flow.
+    /// Correlation of the velocity with the first one sampled, ⟨u(t)·u(t_1)⟩/(‖u(t)‖ ‖u(t_1)‖) over the fluid: below zero the
+    /// flow has reversed; none without flow.
     pub flow_correlation: Option<f64>,
 }
 
-/// What the flow of a discharge took.
+/// The work of the flow of a discharge.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct FlowReport {
-    /// Which solver.
+    /// Name of the solver.
     pub solver: &'static str,
-    /// Its work.
+    /// Its counters.
     pub counters: FlowCounters,
-    /// Largest speed at any update, in xi_N/tau_N.
+    /// Largest speed at any update, in ξ_N/τ_N.
     pub max_speed: f64,
     /// Largest velocity left on the particle's boundary at any update, relative to that without the particle.
     pub boundary_residual: f64,
@@ -145,7 +146,7 @@ pub struct FlowReport {
 pub struct NematicPhase {
     /// Bytes by component.
     pub bytes: ByteAccount,
-    /// Passes over the field for the second elastic constant, since the run began or went on.
+    /// Passes over the field for the second elastic constant, since the run began or was resumed.
     pub n_second_passes: u64,
     /// The flow; none if none was modelled.
     pub flow: Option<FlowReport>,
@@ -167,8 +168,8 @@ impl PhaseExtension for NematicPhase {
     }
 }
 
-/// Counters and guards of a discharge: times in tau_N, energies in L xi_N.
+/// Counters and guards of a discharge: times in τ_N, energies in L ξ_N.
 pub type PhaseReport = topo_core::PhaseReport<NematicPhase>;
 
-/// What a discharge leaves behind: times in tau_N, energies in L xi_N.
+/// What a discharge leaves behind: times in τ_N, energies in L ξ_N.
 pub type RunRecord = topo_core::RunRecord<NematicSample, NematicPhase>;

@@ -2,6 +2,7 @@
 
 use std::sync::OnceLock;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::NematicBattery;
@@ -17,13 +18,13 @@ use crate::real::Real;
 use crate::{NematicError, NematicParameters, NematicState, Particle};
 
 /// What the surface does after the switch.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum SwitchTarget {
-    /// Nothing: the director may take any orientation.
+    /// It prefers nothing: the director may take any orientation.
     Free(FreeSurface),
-    /// What it did before: the nematic goes on as it is.
+    /// It keeps its pattern: the nematic stays as it is.
     Keep,
     /// It prefers another pattern.
     Pattern {
@@ -41,13 +42,15 @@ impl Default for SwitchTarget {
 }
 
 /// How the anchoring is switched.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct SwitchSettings {
-    /// What to.
+    /// What the surface is switched to.
+    #[schemars(example = SwitchTarget::Keep)]
     pub to: SwitchTarget,
-    /// Over which time, in tau_N; at once when left out.
+    /// Duration of the switch, in τ_N; at once when left out.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("x-unit" = "τ_N", "x-default" = "at once", "exclusiveMinimum" = 0), example = 1.0)]
     pub ramp: Option<f64>,
 }
 
@@ -73,7 +76,7 @@ impl SwitchSettings {
     }
 }
 
-/// A battery whose anchoring has just been switched, with the account of what the switch took.
+/// A battery whose anchoring has just been switched, with the energy that the switch removed.
 #[derive(Debug, Clone)]
 pub struct SwitchedNematic {
     pub(crate) charged: ChargedNematic,
@@ -86,8 +89,8 @@ pub struct SwitchedNematic {
 impl ChargedNematic {
     /// Switches the anchoring.
     ///
-    /// A free surface keeps the values that the pattern had given it, as start values of the cells that the sphere cuts; how steeply
-    /// they go on inside is set so that the energy does not jump, as far as that is possible.
+    /// A free surface keeps the values that the pattern had given it, as start values of the cells that the sphere cuts; their
+    /// slope inside is chosen so that the energy does not jump, as far as that is possible.
     ///
     /// # Errors
     /// A broken pattern or ramp; a battery without a particle.
@@ -172,12 +175,12 @@ impl SwitchedNematic {
         &self.state
     }
 
-    /// Energy just after the switch, in L xi_N.
+    /// Energy just after the switch, in L ξ_N.
     pub fn start(&self) -> f64 {
         self.start
     }
 
-    /// Energy that the switch itself removed, in L xi_N; negative if it brought some.
+    /// Energy that the switch itself removed, in L ξ_N; negative if it added energy.
     pub fn removed(&self) -> f64 {
         self.charged.energy().total() - self.start
     }
@@ -195,7 +198,7 @@ const STEEPEST: f64 = 3.0;
 
 /// A field that was continued into the sphere.
 pub(crate) struct Extended {
-    /// Its energy, in L xi_N.
+    /// Its energy, in L ξ_N.
     pub energy: f64,
     /// Slope from the surface inwards, in multiples of that outside: near 1 where apertures and volumes are right.
     #[cfg_attr(

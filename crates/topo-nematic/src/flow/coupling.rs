@@ -1,6 +1,7 @@
 //! Director and flow together.
 
 use fearless_simd::Level;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use topo_core::{finite, in_range, positive};
 
@@ -16,32 +17,36 @@ use crate::stokes::{
     StokesSolver,
 };
 
-/// Which solver finds the flow.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+/// Which solver computes the flow.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum FlowSolver {
     /// Spectral where x and y are periodic, else sparse.
     #[default]
     Auto,
-    /// Fourier modes along x and y: [`Spectral`].
+    /// By Fourier modes along x and y, which are periodic then.
     Spectral,
-    /// Any sides: [`Sparse`].
+    /// For any sides.
     Sparse,
 }
 
 /// How the flow is computed.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct FlowParameters {
     /// Root mean square velocity left on the particle's boundary, over that without the particle.
+    #[schemars(extend("x-unit" = "1", "exclusiveMinimum" = 0), example = 0.02)]
     pub boundary_residual: f64,
     /// What drives the fluid besides the director.
     pub drive: Drive,
-    /// Which solver finds the flow.
+    /// Which solver computes the flow.
+    #[schemars(example = FlowSolver::Sparse)]
     pub solver: FlowSolver,
     /// Relative residual of the sparse solver.
+    #[schemars(range(min = 1e-14, max = 0.1), extend("x-unit" = "1"), example = 1e-6)]
     pub solver_tolerance: f64,
     /// Most memory the flow may take, in bytes.
+    #[schemars(extend("x-unit" = "bytes"), example = 8_000_000_000_u64)]
     pub memory_limit: u64,
 }
 
@@ -99,14 +104,14 @@ impl FlowParameters {
     }
 }
 
-/// What the flow took so far.
+/// Work of the flow so far.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct FlowCounters {
     /// Updates of the velocity.
     pub n_updates: u64,
     /// Flow solves over the whole grid.
     pub n_solves: u64,
-    /// Flow solves restricted to the particle's boundary, one an iteration of the no-slip condition.
+    /// Flow solves restricted to the particle's boundary, one per iteration of the no-slip condition.
     pub n_boundary_solves: u64,
     /// Iterations inside the flow solver; none if it is direct.
     pub n_iterations: u64,
@@ -121,9 +126,10 @@ pub struct FlowCounters {
 /// \eta \nabla^2 u - \nabla p + f = 0, \qquad f_i = -H:\partial_i Q - \partial_j T_{ji}
 /// ```
 ///
-/// with W_ij = d_i u_j, D and Omega its symmetric and antisymmetric part, and T the stress of co-rotation and alignment. Velocities
-/// live on faces, Q in cells: the flow terms are a linear map from velocity to rate, and the force is its discrete adjoint. So the
-/// power that the fluid takes from the director is exactly f.u, whatever the resolution.
+/// with W_ij = ∂_i u_j, D and Ω its symmetric and antisymmetric part, χ the flow alignment, H the molecular field and T the
+/// stress of co-rotation and alignment. Velocities are stored on faces, Q in cells. The flow terms are a linear map from
+/// velocity to rate, and the force is its discrete adjoint, so the power that the fluid takes from the director is exactly f·u
+/// at any resolution.
 ///
 /// The velocity is that of the last update. Memory is taken at set-up: neither [`update`](Self::update) nor
 /// [`add_rate`](Self::add_rate) allocates, and both give the same bits for any number of threads.
@@ -132,7 +138,10 @@ pub struct FlowCounters {
 /// `law_flow_takes_the_energy_that_the_director_loses`, `val_director_aligns_at_the_leslie_angle`
 ///
 /// # References
-/// `beris1994`, `patil2020discharging`
+/// [beris1994], [patil2020discharging]
+///
+/// [beris1994]: https://doi.org/10.1093/oso/9780195076943.001.0001
+/// [patil2020discharging]: https://doi.org/10.1103/PhysRevResearch.2.043196
 pub struct FlowCoupling {
     grid: Grid,
     stencil: Stencil,
@@ -277,7 +286,7 @@ impl FlowCoupling {
         Ok(())
     }
 
-    /// What a later run needs to go on to the same bits: velocity, warm start and counters.
+    /// What a later run needs to continue to the same bits: velocity, warm start and counters.
     pub(crate) fn memory(&self) -> FlowMemory {
         FlowMemory {
             velocity: self.velocity.clone(),
@@ -291,7 +300,7 @@ impl FlowCoupling {
         }
     }
 
-    /// Goes on from a memory; whether it fits this grid and particle.
+    /// Continues from a memory; returns whether it fits this grid and particle.
     pub(crate) fn restore(&mut self, memory: FlowMemory) -> bool {
         let counts = [memory.n_updates, memory.n_iterations];
         let numbers = [memory.power, memory.dissipation, memory.residual];
@@ -319,7 +328,7 @@ impl FlowCoupling {
 
     /// Adds what the velocity of the last update does to `q` to `rate`; both component-major, 5 x n_cells.
     ///
-    /// Zero in cells that are not fluid.
+    /// It is zero in cells that are not fluid.
     ///
     /// # Panics
     /// When a field is not 5 x n_cells long.
@@ -360,39 +369,41 @@ impl FlowCoupling {
         self.weights.as_deref()
     }
 
-    /// Velocity of the last update.
+    /// Velocity of the last update, in ξ_N/τ_N.
     pub fn velocity(&self) -> &MacField {
         &self.velocity
     }
 
-    /// Velocity at the cell centres, component-major, 3 x n_cells: allocated for the caller.
+    /// Velocity at the cell centres, in ξ_N/τ_N, component-major, 3 x n_cells; newly allocated.
     pub fn centred_velocity(&self) -> Vec<f64> {
         observables::centred(&self.velocity)
     }
 
-    /// Curl of the velocity at the cell centres, component-major, 3 x n_cells: allocated for the caller.
+    /// Curl of the velocity at the cell centres, in 1/τ_N, component-major, 3 x n_cells; newly allocated.
     pub fn vorticity(&self) -> Vec<f64> {
         observables::vorticity(&self.flow(), self.level)
     }
 
-    /// Largest velocity component on a face.
+    /// Largest velocity component on a face, in ξ_N/τ_N.
     pub fn max_speed(&self) -> f64 {
         self.velocity.max_abs()
     }
 
-    /// Power f.u that the director gave to the fluid at the last update: the flow lowers its energy at this rate.
+    /// Power f·u that the director gave to the fluid at the last update, in L ξ_N/τ_N: the flow lowers the energy of the
+    /// director at this rate.
     ///
-    /// With moving walls, their co-rotation and alignment of the cells next to them come on top.
+    /// With moving walls, the co-rotation and alignment of the cells next to them are not included.
     pub fn power(&self) -> f64 {
         self.power
     }
 
-    /// Viscous dissipation at the last update: the power, the work of the drive, and what the boundary residual of the particle does.
+    /// Viscous dissipation at the last update, in L ξ_N/τ_N: the power, the work of the drive, and the work of the boundary
+    /// residual of the particle.
     pub fn dissipation(&self) -> f64 {
         self.dissipation
     }
 
-    /// Force that the particle exerts on the fluid; none without a particle.
+    /// Force that the particle exerts on the fluid, in L; none without a particle.
     pub fn particle_force(&self) -> Option<[f64; 3]> {
         let volume = self.grid.spacing().powi(3);
         self.no_slip.as_ref().map(|n| n.total_force(volume))
@@ -403,7 +414,7 @@ impl FlowCoupling {
         self.residual
     }
 
-    /// What the flow took so far.
+    /// Work of the flow so far.
     pub fn counters(&self) -> FlowCounters {
         let [n_solves, n_boundary_solves] = self.solver.n_solves();
         FlowCounters {

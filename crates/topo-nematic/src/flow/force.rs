@@ -1,4 +1,4 @@
-//! The force of the director on the fluid: exactly what makes the flow terms conserve energy.
+//! The force of the director on the fluid: the adjoint of the flow terms, so that they conserve energy.
 
 use std::sync::{Mutex, PoisonError};
 

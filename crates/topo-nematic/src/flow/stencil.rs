@@ -148,7 +148,7 @@ impl Stencil {
         jk
     }
 
-    /// The cell along `axis` that stands for place `at`: around the box, or as a wall reflects it.
+    /// The cell along `axis` that represents place `at`: around the box, or as a wall reflects it.
     pub fn image(&self, axis: usize, at: isize) -> usize {
         let n = self.cells[axis] as isize;
         let place = match self.faces[axis] {

@@ -23,7 +23,7 @@ const PLACE: [[usize; 3]; 3] = [[0, 1, 2], [1, 3, 4], [2, 4, 5]];
 /// -\Omega Q + Q \Omega + \chi [\tfrac23 D + DQ + QD] - 2 \chi (Q + I/3) (Q : D)
 /// ```
 ///
-/// With M = Omega + chi D, the first four terms are Q M and its transpose, and 2/3 chi D.
+/// With M = Ω + χ D, the first four terms are Q M and its transpose, and 2/3 χ D.
 #[inline(always)]
 pub(super) fn turn_and_align<S: Simd>(
     q: [f64x8<S>; 5],

@@ -13,9 +13,9 @@ const MOST_PRODUCTS: usize = 4000;
 /// How far a lowest eigenvalue is to be known: near zero, where its sign counts, to `near_zero`, elsewhere to a share of its size.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Accuracy {
-    /// Accuracy near zero, in L/xi_N².
+    /// Accuracy near zero, in L/ξ_N².
     pub near_zero: f64,
-    /// Scale of the lowest eigenvalues, in L/xi_N².
+    /// Scale of the lowest eigenvalues, in L/ξ_N².
     pub unit: f64,
     /// Stop at the first direction in which the energy clearly falls: enough to leave a saddle.
     pub any_saddle: bool,
@@ -45,7 +45,7 @@ impl Accuracy {
 /// The lowest eigenvalue that was found.
 #[derive(Debug, Clone)]
 pub(crate) struct LowestMode {
-    /// The eigenvalue, in L/xi_N²; an upper bound of the lowest.
+    /// The eigenvalue, in L/ξ_N²; an upper bound of the lowest.
     pub eigenvalue: f64,
     /// Norm of A v − λ v for the mode v of norm 1.
     pub residual: f64,

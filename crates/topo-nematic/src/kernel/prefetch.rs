@@ -1,9 +1,9 @@
-//! Calls for data before they are wanted.
+//! Prefetches data before they are needed.
 //!
-//! A pass reads and writes up to forty rows side by side, more than the processor follows by itself: without these calls
-//! it waits for memory a third of the time.
+//! A pass reads and writes up to forty rows side by side, more streams than the processor prefetches by itself: without these
+//! calls it waits for memory a third of the time.
 
-/// Has the line of `array` that lies `BYTES` beyond number `at` brought near; a mere hint, beyond the end too.
+/// Prefetches the cache line of `array` that is `BYTES` beyond element `at`. Only a hint: it may be beyond the end.
 #[inline(always)]
 pub(crate) fn prefetch<T, const BYTES: usize>(array: &[T], at: usize) {
     let place = array

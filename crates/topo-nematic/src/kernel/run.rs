@@ -2,6 +2,7 @@
 
 use fearless_simd::{Level, Simd};
 use rayon::prelude::*;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::domain::{Domain, SpecialCell, Wall, face_index};
@@ -14,7 +15,7 @@ use crate::tensor::{Tensor5, contract};
 use crate::vector::dispatch;
 
 /// How many threads share one field.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Threads {
     /// One: best when many cases run side by side.

@@ -1,4 +1,4 @@
-//! The second elastic constant: a pass of its own, only when it is asked for.
+//! The second elastic constant: a separate pass, made only when the constant is set.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -10,7 +10,7 @@ use crate::tensor::Tensor5;
 /// The energy of div Q on the cells whose six neighbours are fluid.
 ///
 /// ```math
-/// F = \tfrac{L_2}{2} h^3 \sum_{cells} v_i v_i, \quad v_i = \sum_j \frac{Q_{ij}(x + h e_j) - Q_{ij}(x - h e_j)}{2h}
+/// F = \tfrac{L_2}{2} h^3 \sum_{\text{cells}} v_i v_i, \quad v_i = \sum_j \frac{Q_{ij}(x + h e_j) - Q_{ij}(x - h e_j)}{2h}
 /// ```
 ///
 /// Central differences, and their adjoint for the field: exact for the discrete energy. The layer of cells next to walls and to the

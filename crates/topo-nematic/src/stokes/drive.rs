@@ -1,5 +1,6 @@
 //! What drives the fluid besides the director: a body force, moving walls, a mean flow.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use topo_core::finite;
 
@@ -8,16 +9,19 @@ use crate::stokes::{MacField, StokesError};
 
 /// Uniform body force, velocities of the walls, mean velocity of a fully periodic fluid; all zero by default.
 ///
-/// A wall moving with U acts on its neighbours as the force 2 eta U/h^2, since the ghost value 2U - u replaces -u: to a solver,
-/// every drive is a force.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+/// A wall that moves with U acts on its neighbours as the force 2 η U/h², since the ghost value 2U − u replaces −u. So every
+/// drive is a force for a solver.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Drive {
-    /// Force per volume, uniform.
+    /// Uniform force per volume, in L/ξ_N³.
+    #[schemars(extend("x-unit" = "L/ξ_N³", "examples" = [[0.001, 0.0, 0.0]]))]
     pub body_force: [f64; 3],
-    /// Velocity of the lower and the upper wall along each axis: tangential.
+    /// Velocity of the lower and the upper wall along each axis, in ξ_N/τ_N: tangential.
+    #[schemars(extend("x-unit" = "ξ_N/τ_N", "examples" = [[[[0.0, 0.0, 0.0], [0.0, 0.0, 0.0]], [[0.0, 0.0, 0.0], [0.0, 0.0, 0.0]], [[-0.01, 0.0, 0.0], [0.01, 0.0, 0.0]]]]))]
     pub wall_velocity: [[[f64; 3]; 2]; 3],
-    /// Mean velocity; only where all sides are periodic.
+    /// Mean velocity, in ξ_N/τ_N; only where all sides are periodic.
+    #[schemars(extend("x-unit" = "ξ_N/τ_N", "examples" = [[0.01, 0.0, 0.0]]))]
     pub mean_velocity: [f64; 3],
 }
 
@@ -60,7 +64,7 @@ impl Drive {
         Ok(())
     }
 
-    /// Adds the forces that stand for the body force and the walls, in a fluid of viscosity `viscosity`.
+    /// Adds the body force and the forces that represent the walls, in a fluid of viscosity `viscosity`.
     pub(crate) fn add_force(&self, grid: &Grid, viscosity: f64, force: &mut MacField) {
         if self.is_zero() {
             return;
@@ -99,7 +103,7 @@ impl Drive {
         sum
     }
 
-    /// Work per time of body force and walls on a fluid that moves with `velocity`.
+    /// Work per time of body force and walls on a fluid that moves with `velocity`, in L ξ_N/τ_N.
     pub(crate) fn power(&self, grid: &Grid, viscosity: f64, velocity: &MacField) -> f64 {
         let stress = 2.0 * viscosity / grid.spacing().powi(2);
         let mut sum = velocity.dot_uniform(self.body_force);

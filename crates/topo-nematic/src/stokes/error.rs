@@ -55,12 +55,12 @@ pub enum StokesError {
         what: &'static str,
         /// Relative residual reached.
         residual: f64,
-        /// Relative residual wanted.
+        /// Relative residual requested.
         tolerance: f64,
         /// Iterations done.
         n_iterations: usize,
     },
-    /// A force that is no number.
+    /// A force is NaN or infinite.
     #[error(
         "the force on the fluid is not finite: the order parameter field that made it is broken"
     )]
@@ -70,9 +70,9 @@ pub enum StokesError {
         "a particle of radius {radius} covers no cell face at spacing {spacing}: refine the grid"
     )]
     ParticleTooSmall {
-        /// Hydrodynamic radius.
+        /// Hydrodynamic radius, in ξ_N.
         radius: f64,
-        /// Grid spacing.
+        /// Grid spacing, in ξ_N.
         spacing: f64,
     },
     /// A parameter outside its domain.

@@ -5,9 +5,9 @@ use serde::{Deserialize, Serialize};
 use crate::grid::Grid;
 use crate::stokes::reduce::{larger, max_over, sum_over};
 
-/// A vector field whose component a lives on the cell faces normal to axis a (marker-and-cell staggering).
+/// A vector field whose component a is stored on the cell faces normal to axis a (marker-and-cell staggering).
 ///
-/// Component a of cell (i, j, k) sits on the *lower* face of that cell along a, and all three components are indexed as the cells
+/// Component a of cell (i, j, k) is on the *lower* face of that cell along a, and all three components are indexed as the cells
 /// are: (k n_y + j) n_x + i. Beyond a periodic pair of outer faces the field repeats. Between walls, face 0 is the lower wall,
 /// where the normal component vanishes; so it does on the upper wall, which is not stored: wrapping the index along the normal
 /// therefore reads the right value with walls too.
@@ -16,7 +16,9 @@ use crate::stokes::reduce::{larger, max_over, sum_over};
 /// `divergence_and_pressure_gradient_are_adjoint`
 ///
 /// # References
-/// `harlow1965`
+/// [harlow1965]
+///
+/// [harlow1965]: https://doi.org/10.1063/1.1761178
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Unchecked")]
 pub struct MacField {

@@ -12,30 +12,33 @@ use self::history::History;
 mod history;
 
 /// How far beyond the nominal radius the boundary layer sits, in spacings: the unknown forces act as if on a slightly larger
-/// sphere than the faces they live on, and this centres the drag.
+/// sphere than their faces, and this centres the drag.
 const RADIUS_SHIFT: f64 = 0.25;
 
 /// Most iterations of one update.
 const MAX_ITERATIONS: usize = 500;
 
-/// Unknown forces on boundary faces that bring the fluid there to rest.
+/// Forces on boundary faces that bring the fluid there to rest.
 ///
-/// With P the extension of a list of forces to the grid and M the map from force to velocity, the forces lambda obey
+/// With P the extension of a list of forces to the grid and M the map from force to velocity, the forces λ follow from
 ///
 /// ```math
 /// P^T M P\, \lambda = -P^T u_0, \qquad u_0 = M f,
 /// ```
 ///
-/// a symmetric positive semi-definite system, solved by conjugate gradients with one restricted flow solve an iteration. The
-/// boundary faces are those within R + h/4 of the centre of which one of the 26 neighbours of the same component is not: a layer
-/// that leaves no gap for the flow to leak through. The start is the combination of the last solutions that is best in the norm
-/// of the system (linear extrapolation in time is one of the candidates).
+/// a symmetric positive semi-definite system, solved by conjugate gradients with one restricted flow solve per iteration. The
+/// boundary faces are those within R + h/4 of the centre that have a neighbour (of the 26 of the same component) outside that
+/// distance: a layer that leaves no gap for the flow to leak through. The start is the combination of the last solutions that
+/// is best in the norm of the system (linear extrapolation in time is one of the candidates).
 ///
 /// # Validation
 /// `val_drag_on_a_cubic_array_of_spheres`, `particle_holds_the_fluid_at_its_boundary`
 ///
 /// # References
-/// `hasimoto1959`, `zick1982`
+/// [hasimoto1959], [zick1982]
+///
+/// [hasimoto1959]: https://doi.org/10.1017/S0022112059000222
+/// [zick1982]: https://doi.org/10.1017/S0022112082000627
 pub struct NoSlip {
     sites: FaceSites,
     tolerance: f64,
@@ -57,7 +60,7 @@ pub(crate) struct NoSlipMemory {
     n_iterations: u64,
 }
 
-/// What one solve took.
+/// The work of one solve.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NoSlipReport {
     /// Iterations, each a flow solve restricted to the boundary faces.
@@ -67,7 +70,7 @@ pub struct NoSlipReport {
 }
 
 impl NoSlip {
-    /// A sphere at `centre` of `radius` (xi_N) in `grid`; boundary velocities fall to `tolerance` of those without it.
+    /// A sphere at `centre` of `radius` (ξ_N) in `grid`; boundary velocities fall to `tolerance` of those without it.
     ///
     /// # Errors
     /// [`StokesError::Value`] for a tolerance or radius that is not positive, [`StokesError::ParticleTooSmall`] for a sphere
@@ -171,7 +174,7 @@ impl NoSlip {
         &self.sites
     }
 
-    /// Forces per volume that the particle exerts on the fluid, one a boundary face.
+    /// Forces per volume that the particle exerts on the fluid, in L/ξ_N³, one per boundary face.
     pub fn forces(&self) -> &[f64] {
         &self.forces
     }
@@ -184,7 +187,7 @@ impl NoSlip {
             .sum()
     }
 
-    /// Force that the particle exerts on the fluid: minus the drag, for cells of volume `volume`.
+    /// Force that the particle exerts on the fluid, in L: minus the drag, for cells of volume `volume` (ξ_N³).
     pub fn total_force(&self, volume: f64) -> [f64; 3] {
         let mut total = [0.0; 3];
         for ((axis, _), force) in self.sites.iter().zip(&self.forces) {
@@ -198,7 +201,7 @@ impl NoSlip {
         self.n_iterations
     }
 
-    /// What a later run needs to go on to the same bits.
+    /// What a later run needs to continue to the same bits.
     pub(crate) fn memory(&self) -> NoSlipMemory {
         NoSlipMemory {
             forces: self.forces.clone(),
@@ -207,7 +210,7 @@ impl NoSlip {
         }
     }
 
-    /// Goes on from a memory; whether it is of the same boundary.
+    /// Continues from a memory; returns whether it is of the same boundary.
     pub(crate) fn restore(&mut self, memory: NoSlipMemory) -> bool {
         let fits = memory.forces.len() == self.forces.len()
             && memory.forces.iter().all(|x| x.is_finite())
@@ -220,7 +223,7 @@ impl NoSlip {
         fits
     }
 
-    /// Forgets earlier solutions, as after a jump in time.
+    /// Forgets earlier solutions, for example after a jump in time.
     pub fn forget(&mut self) {
         self.history.clear();
     }

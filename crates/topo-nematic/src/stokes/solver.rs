@@ -1,4 +1,4 @@
-//! What every flow solver offers.
+//! The interface of the flow solvers.
 
 use crate::stokes::{FaceSites, MacField, StokesError};
 
@@ -13,7 +13,7 @@ use crate::stokes::{FaceSites, MacField, StokesError};
 /// semi-definite, and moving walls are forces too (see [`Drive`](crate::stokes::Drive)). In a fully periodic box the mean velocity is
 /// zero, and the mean force is balanced by a mean pressure gradient.
 pub trait StokesSolver: Send + Sync {
-    /// Writes the velocity that `force` (per volume, on faces) drives.
+    /// Writes the velocity (ξ_N/τ_N) that `force` (per volume, on faces, L/ξ_N³) drives.
     ///
     /// # Errors
     /// [`StokesError::NotConverged`] of an iterative solver.
@@ -30,7 +30,7 @@ pub trait StokesSolver: Send + Sync {
         velocities: &mut [f64],
     ) -> Result<(), StokesError>;
 
-    /// Viscosity eta.
+    /// Viscosity η, in 1/Γ.
     fn viscosity(&self) -> f64;
 
     /// Solves so far: of whole fields, and at sites.
@@ -41,7 +41,7 @@ pub trait StokesSolver: Send + Sync {
         0
     }
 
-    /// Goes on counting from what an earlier run had reached.
+    /// Continues counting from what an earlier run had reached.
     fn set_counts(&mut self, n_solves: [u64; 2], n_iterations: u64);
 
     /// Bytes held.

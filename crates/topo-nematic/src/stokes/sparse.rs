@@ -19,9 +19,9 @@ mod transfer;
 pub struct SparseOptions {
     /// Residual relative to the force, in the norm of the preconditioner.
     pub tolerance: f64,
-    /// Cells up to which a grid is factorised as it is; larger ones are coarsened first.
+    /// Number of cells up to which a grid is factorised directly; larger grids are coarsened first.
     pub direct_up_to: usize,
-    /// Most memory it may take, in bytes.
+    /// Largest memory it may take, in bytes.
     pub memory_limit: u64,
 }
 
@@ -41,24 +41,27 @@ const MAX_ITERATIONS: usize = 300;
 /// Bytes of a Cholesky factor of the 7-point Laplacian over n^(4/3) with 0 to 3 periodic axes, measured up to 32^3 cells.
 const FACTOR_BYTES: [f64; 4] = [75.0, 110.0, 160.0, 220.0];
 
-/// Stokes solver for periodic or walled sides in any combination: the reference, and the way to walls along x or y.
+/// Stokes solver for periodic or walled sides in any combination: the reference, and the solver for walls along x or y.
 ///
 /// ```math
 /// \begin{pmatrix} A & G \\ G^T & 0 \end{pmatrix} \begin{pmatrix} u \\ p \end{pmatrix} =
 /// \begin{pmatrix} f \\ 0 \end{pmatrix}, \qquad A = -\eta \nabla_h^2
 /// ```
 ///
-/// solved by MINRES for velocity and pressure at once. Its preconditioner inverts A, and the pressure that projects the velocity
-/// onto what is free of divergence by the viscosity alone, which is all that is left of G^T A^-1 G on smooth and rough fields
-/// alike: so the number of iterations (at most 50 with a factor, 80 with multigrid) hardly depends on the grid. A is inverted by a Cholesky factor on small grids,
-/// and by one symmetric multigrid cycle with a Cholesky factor on its coarsest grid beyond. The three components run side by
-/// side, each in one order, so that the result does not depend on the number of threads.
+/// solved by MINRES for velocity and pressure at once. Its preconditioner inverts A, and the pressure that makes the velocity
+/// free of divergence by the viscosity alone, which is close to G^T A^-1 G for smooth and rough fields alike: so the number of
+/// iterations (at most 50 with a factor, 80 with multigrid) hardly depends on the grid. A is inverted by a Cholesky factor on
+/// small grids, and by one symmetric multigrid cycle with a Cholesky factor on its coarsest grid beyond. The three components
+/// run side by side, each in one order, so that the result does not depend on the number of threads.
 ///
 /// # Validation
 /// `law_spectral_and_sparse_flow_agree`, `val_flow_in_a_square_duct`
 ///
 /// # References
-/// `elman2014`, `harlow1965`
+/// [elman2014], [harlow1965]
+///
+/// [elman2014]: https://doi.org/10.1093/acprof:oso/9780199678792.001.0001
+/// [harlow1965]: https://doi.org/10.1063/1.1761178
 pub struct Sparse {
     grid: Grid,
     viscosity: f64,
@@ -120,7 +123,7 @@ impl Sparse {
         (vectors + cycles) as u64 + factors as u64
     }
 
-    /// Solves for the force in the iteration's right-hand side, which is scaled by h^2/eta.
+    /// Solves for the force in the iteration's right-hand side, which is scaled by h^2/η.
     fn run(&mut self) -> Result<(), StokesError> {
         let n = self.grid.n_cells();
         let periodic = self.grid.faces() == [Faces::Periodic; 3];

@@ -30,16 +30,19 @@ mod symbol;
 /// \eta \left( m^4 - 2 m^2 D_n^2 + G D_t^2 D \right) w = m^2 f_z - m G f_L, \qquad m^2 = |g_x|^2 + |g_y|^2
 /// ```
 ///
-/// with the difference symbols g, the second differences D_n^2 and D_t^2 of normal and tangential components, and gradient G and
-/// divergence D along z. With periodic z, a third transform makes every mode algebraic. Either way the solution is that of the
-/// discrete equations to round-off. Nothing is allocated in a solve, and each mode is solved by one thread in one order, so that
-/// the result does not depend on the number of threads.
+/// with the difference symbols g, the second differences D_n² and D_t² of normal and tangential components, and the gradient G
+/// and divergence D along z. w is the normal velocity, f_z and f_L are the normal and longitudinal force. With periodic z, a
+/// third transform makes every mode algebraic. Either way the solution is that of the discrete equations to rounding. Nothing
+/// is allocated in a solve, and each mode is solved by one thread in one order, so that the result does not depend on the
+/// number of threads.
 ///
 /// # Validation
 /// `law_spectral_and_sparse_flow_agree`, `val_poiseuille_and_couette_flow`, `law_stokes_solution_converges_at_second_order`
 ///
 /// # References
-/// `harlow1965`
+/// [harlow1965]
+///
+/// [harlow1965]: https://doi.org/10.1063/1.1761178
 pub struct Spectral {
     cells: [usize; 3],
     viscosity: f64,
@@ -67,7 +70,7 @@ enum Source<'a> {
 }
 
 impl Spectral {
-    /// A solver on `grid` for a fluid of viscosity `viscosity` (reduced units: Gamma eta).
+    /// A solver on `grid` for a fluid of viscosity `viscosity` (reduced units: Γ η).
     ///
     /// # Errors
     /// [`StokesError::Walls`] when x or y are not periodic, [`StokesError::Value`] for a viscosity that is not positive.
@@ -102,7 +105,7 @@ impl Spectral {
         })
     }
 
-    /// Bytes a solver on `cells` will hold, but for its small tables.
+    /// Bytes a solver on `cells` will hold, without its small tables.
     pub fn n_bytes_estimate(cells: [usize; 3]) -> u64 {
         let [n_x, n_y, n_z] = cells.map(|n| n as u64);
         3 * (n_x / 2 + 1) * n_y * n_z * size_of::<Complex64>() as u64

@@ -7,19 +7,16 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Callable
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from . import _topo, table
 from .errors import refuse
-from .rods import Run, _given, _Here
+from .rods import Observer, Run, _file, _given, _Here
 
 if TYPE_CHECKING:
     from .table import Table
-
-#: A function that looks on: it is called between two steps, on the calling thread, and changes nothing.
-Observer = Callable[[dict], object]
 
 
 @dataclass
@@ -202,10 +199,6 @@ class Colloid:
 
     def __repr__(self) -> str:
         return f"Colloid(radius {self.radius:g} xi_N, q = {self.q}, cells {self.cells})"
-
-
-def _file(checkpoint: str | os.PathLike | None):
-    return None if checkpoint is None else (os.fspath(checkpoint), 30.0)
 
 
 class ChargedColloid(_Here):

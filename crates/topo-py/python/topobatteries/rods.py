@@ -5,8 +5,9 @@ Lengths in h, times in T_0 = 2 L η/(h E_b), energies in E_0 = E_b h² L, densit
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Mapping
+from typing import TYPE_CHECKING, Any, Callable, Mapping
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,6 +18,9 @@ from .errors import TopoError, refuse
 
 if TYPE_CHECKING:
     from .table import Table
+
+#: A function that looks on: it is called between two steps, on the calling thread, and changes nothing.
+Observer = Callable[[dict], object]
 
 
 @dataclass
@@ -191,15 +195,24 @@ class Rod:
         """Vertices before charging (n, 3), in h."""
         return self._rod.points
 
-    def charge(self, *, duration: float | None = None, outputs_per_decade: float | None = None) -> ChargedRod:
+    def charge(
+        self,
+        *,
+        duration: float | None = None,
+        outputs_per_decade: float | None = None,
+        observer: Observer | None = None,
+        checkpoint: str | os.PathLike | None = None,
+    ) -> ChargedRod:
         """Lets the twisted closed fibre relax.
 
         Args:
             duration: of the relaxation, in T_0.
             outputs_per_decade: output times a decade of time.
+            observer: called at output times with ``phase``, the numbers of `RodRun.samples` and ``points`` (n, 3).
+            checkpoint: a file from which the same call goes on after it was stopped; written every 30 s and on Ctrl-C.
         """
         given = _given(duration=duration, outputs_per_decade=outputs_per_decade)
-        return ChargedRod(self._rod.charge(given))
+        return ChargedRod(self._rod.charge(given, observer, _file(checkpoint)))
 
     def __getstate__(self):
         return self._made, {k: v for k, v in self.__dict__.items() if k not in ("_rod", "_made")}
@@ -211,6 +224,10 @@ class Rod:
 
     def __repr__(self) -> str:
         return f"Rod(L = {self.length:g} h, ropelength {self.ropelength:.3f})"
+
+
+def _file(checkpoint: str | os.PathLike | None):
+    return None if checkpoint is None else (os.fspath(checkpoint), 30.0)
 
 
 def _given(**settings: Any) -> dict[str, Any]:
@@ -249,7 +266,7 @@ class ChargedRod(_Here):
     def cut(self, at: float | None = None) -> CutRod:
         """Cuts the fibre at s/L = ``at``, or where its energy density is largest."""
         if not self.run.finished:
-            raise TopoError(f"the charge did not come to its end: {self.run.stop}")
+            raise TopoError(f"the charge did not finish: {self.run.stop}")
         return CutRod(self._rod.cut(at))
 
     def __repr__(self) -> str:
@@ -272,6 +289,8 @@ class CutRod(_Here):
         until_released: float | None = None,
         longest: float | None = None,
         outputs_per_decade: float | None = None,
+        observer: Observer | None = None,
+        checkpoint: str | os.PathLike | None = None,
     ) -> RodDischarge:
         """Lets the open fibre go.
 
@@ -279,9 +298,11 @@ class CutRod(_Here):
             until_released: share of the energy whose release ends the run.
             longest: longest time followed, in T_0.
             outputs_per_decade: output times a decade of time.
+            observer: called at output times as that of `Rod.charge`.
+            checkpoint: a file, other than that of the charge, from which the same call goes on after it was stopped.
         """
         given = _given(until_released=until_released, longest=longest, outputs_per_decade=outputs_per_decade)
-        return RodDischarge(**self._rod.discharge(given))
+        return RodDischarge(**self._rod.discharge(given, observer, _file(checkpoint)))
 
     def __repr__(self) -> str:
         return f"CutRod(at s/L = {self.at:.4f})"

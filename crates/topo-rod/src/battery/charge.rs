@@ -9,7 +9,7 @@ use super::phase::{Course, Finished, RodPhaseRun};
 use super::record::{Recorder, RunRecord, Scales};
 use crate::{Ends, RodError, RodState};
 
-/// How long a rod is charged and how often it is looked at.
+/// How long a rod is charged and how often it is sampled.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ChargeSettings {
@@ -18,7 +18,7 @@ pub struct ChargeSettings {
     pub duration: f64,
     /// First output time after the start, in T_0.
     pub first_output: f64,
-    /// Output times a decade.
+    /// Output times per decade.
     pub outputs_per_decade: f64,
 }
 
@@ -55,9 +55,9 @@ pub struct ChargedRod {
 }
 
 impl RodBattery {
-    /// Lets the twisted closed rod relax.
+    /// Relaxes the twisted closed rod.
     ///
-    /// A run that cannot go on keeps what it has and says why in the report.
+    /// A run that cannot continue returns what it has; its report gives the reason.
     ///
     /// # Errors
     /// A setting out of range, a start curve that has no finite energy, or a checkpoint that cannot be used.

@@ -20,7 +20,7 @@ pub enum CutSite {
 pub struct CutCandidate {
     /// Vertex to cut.
     pub vertex: usize,
-    /// Its place s/L.
+    /// Its position s/L.
     pub at: f64,
     /// Smoothed density per area, in E_b.
     pub density: f64,
@@ -29,7 +29,7 @@ pub struct CutCandidate {
 /// Local maxima of a smoothed density on a closed rod within `share` of the largest, largest first.
 ///
 /// The maximum is often nearly degenerate, and the discharge depends on which one is cut; these are the sites that a small
-/// imperfection of a real fibre would choose among. Maxima closer than π h to a larger one count as its flank.
+/// imperfection of a real fibre would choose among. Maxima closer than π h to a larger one count as part of it.
 pub fn cut_candidates(smoothed: &[f64], rest_length: f64, share: f64) -> Vec<CutCandidate> {
     let n = smoothed.len();
     let peak =
@@ -56,7 +56,7 @@ pub fn cut_candidates(smoothed: &[f64], rest_length: f64, share: f64) -> Vec<Cut
     kept
 }
 
-/// A rod that has just been cut, with the account of what the cut took.
+/// A rod that has just been cut.
 #[derive(Debug, Clone)]
 pub struct CutRod {
     /// What was cut.
@@ -65,7 +65,7 @@ pub struct CutRod {
     pub state: RodState,
     /// Vertex of the closed rod that was doubled.
     pub vertex: usize,
-    /// Its place s/L.
+    /// Its position s/L.
     pub at: f64,
 }
 

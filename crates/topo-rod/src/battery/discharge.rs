@@ -9,20 +9,20 @@ use super::phase::{Course, Finished, RodPhaseRun};
 use super::record::{Recorder, RunRecord, Scales};
 use crate::{Ends, RodError};
 
-/// How far a discharge is followed and how often it is looked at.
+/// How far a discharge is followed and how often it is sampled.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct DischargeSettings {
-    /// Share of the elastic energy whose release ends the run: of that which the cut left, so that the share of what was stored
-    /// before the cut is released too.
+    /// The run ends when this share of the elastic energy left by the cut is released. At least the same share of the energy
+    /// before the cut is then released.
     pub until_released: f64,
     /// Longest time followed, in T_0.
     pub longest: f64,
     /// First output time after the cut, in T_0.
     pub first_output: f64,
-    /// Output times a decade.
+    /// Output times per decade.
     pub outputs_per_decade: f64,
-    /// What holds or loads the ends of the open rod.
+    /// How the ends of the open rod are held and loaded.
     pub ends: Ends,
 }
 
@@ -58,32 +58,33 @@ impl DischargeSettings {
     }
 }
 
-/// A discharge: where it was cut, what the cut took, and how the rest was released.
+/// A discharge: where the rod was cut, what the cut removed, and how the rest was released.
 #[derive(Debug, Clone)]
 pub struct Discharge {
     /// Place of the cut, s/L.
     pub at: f64,
     /// Energy per part that the cut itself removed (contact included), in E_0.
     pub removed: f64,
-    /// Elastic energy just before the cut, in E_0: released shares count from it, and what the cut removes is released at once.
+    /// Elastic energy just before the cut, in E_0: released shares count from it, and what the cut removes counts as released
+    /// at once.
     pub start: f64,
     /// Elastic energy just after the cut, in E_0.
     pub after_cut: f64,
-    /// When the tips had parted so far that they count as separate strands, in T_0.
+    /// Time at which the tips were so far apart that they count as separate strands, in T_0.
     pub parted: Option<f64>,
     /// The run.
     pub record: RunRecord,
 }
 
 impl Discharge {
-    /// Whether the share asked for was released.
+    /// Whether the requested share was released.
     pub fn is_finished(&self) -> bool {
         matches!(self.record.report.stop, StopReason::Condition(_))
     }
 }
 
 impl CutRod {
-    /// Lets the open rod go.
+    /// Releases the open rod and follows it.
     ///
     /// # Errors
     /// A setting out of range, end conditions that contradict each other, or a checkpoint that cannot be used.

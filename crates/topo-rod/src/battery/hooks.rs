@@ -1,9 +1,9 @@
-//! What a caller may hang into a run of a rod.
+//! What a caller can attach to a run of a rod.
 
 use super::record::RodSample;
 
-/// Hooks of a charge or a discharge; none of them changes its result.
+/// Hooks of a charge or a discharge. None of them changes its result.
 ///
-/// The function that sees samples is given each of them, of charges too. A finished phase keeps its checkpoint, so that the next call
-/// has its result at once: in memory, until the next one is due.
+/// The sample function gets every sample, also those of a charge. A finished phase keeps its result, in memory until the next
+/// checkpoint is due, so that the next call returns it at once.
 pub type RunHooks<'a> = topo_core::RunHooks<'a, dyn FnMut(&RodSample) + 'a>;

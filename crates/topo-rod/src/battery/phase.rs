@@ -1,4 +1,4 @@
-//! A phase of a rod on its way: steps, looks, checkpoints, progress.
+//! A phase of a rod in progress: steps, samples, checkpoints, reports.
 
 use serde::{Deserialize, Serialize};
 use topo_core::{CpuClock, Phase, Progress, Sample, SimulationMemory, StopReason, case_identity};
@@ -13,7 +13,7 @@ use crate::{RodError, RodModel, RodState};
 
 const SCHEMA: &str = "rod-phase/1";
 
-/// What ends a phase, and what is said of it.
+/// What ends a phase, and what is reported of it.
 #[derive(Clone, Copy)]
 pub(super) struct Course {
     pub phase: Phase,
@@ -28,7 +28,7 @@ pub(super) struct RodPhaseRun {
     course: Course,
     simulation: RodSimulation,
     recorder: Recorder,
-    /// When the tips had parted so far that they count as separate strands, in η/E_b.
+    /// Time at which the tips were so far apart that they count as separate strands, in η/E_b.
     parted: Option<f64>,
     case: String,
     clock: CpuClock,
@@ -46,7 +46,8 @@ struct Beside {
 type Saved = (SimulationMemory, RodState, ModelMemory, Seen, Beside);
 
 impl RodPhaseRun {
-    /// The phase that begins at `state`, or goes on from its checkpoint; `of` is what its case depends on beside the battery.
+    /// The phase that begins at `state`, or continues from its checkpoint; `of` is what its case depends on besides the
+    /// battery.
     pub(super) fn begin(
         battery: &RodBattery,
         course: Course,
@@ -206,7 +207,7 @@ impl RodPhaseRun {
         self.earlier_cpu_seconds + self.clock.seconds()
     }
 
-    /// Ends the phase: its last state is looked at, and a phase that came to its end is kept.
+    /// Ends the phase: its last state is sampled, and the result of a finished phase is kept.
     pub(super) fn finish(
         mut self,
         stop: StopReason,
@@ -232,7 +233,7 @@ impl RodPhaseRun {
 
 /// How a turn ended.
 enum Ended {
-    /// The tips have parted, and the phase goes on.
+    /// The tips have parted, and the phase continues.
     Parted,
     /// The phase is over.
     Over(StopReason),
@@ -255,7 +256,7 @@ impl Beside {
 }
 
 impl RodBattery {
-    /// What a run depends on; of terms of the caller's own, their names.
+    /// What a run depends on; of terms supplied by the caller, their names.
     fn case(&self, of: &impl Serialize) -> String {
         let own = self
             .own_terms

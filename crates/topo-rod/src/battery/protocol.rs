@@ -19,9 +19,9 @@ pub struct Protocol {
 }
 
 impl RodBattery {
-    /// Charges, cuts and discharges. No discharge follows a charge that did not come to its end.
+    /// Charges, cuts and discharges. A charge that does not finish is not followed by a discharge.
     ///
-    /// The checkpoint file of the hooks, if there is one, is that of the charge; the one of the discharge stands beside it, with
+    /// The checkpoint file of the hooks, if there is one, is that of the charge. That of the discharge is beside it, with
     /// `discharge` as its last extension.
     ///
     /// # Errors

@@ -31,7 +31,7 @@ pub struct RodSample {
     pub n_contacts: usize,
     /// Least distance of vertices of different strands, in h; none if no strands are in reach.
     pub min_distance: Option<f64>,
-    /// Distance of the ends, in h.
+    /// Distance between the ends, in h.
     pub end_to_end: f64,
     /// Positions and twists.
     pub state: RodState,
@@ -49,7 +49,7 @@ impl RodSample {
 pub struct RodPhase {
     /// Parts of the stored energy, in the order of curve and samples.
     pub parts: RodParts,
-    /// Work of the model by component.
+    /// Computational work of the model by component.
     pub work: WorkAccount,
     /// Least distance of vertices of different strands over the contact diameter; none if none came in reach.
     pub min_distance_over_contact: Option<f64>,
@@ -111,7 +111,7 @@ pub(super) struct Recorder {
     pub tube: Tube,
     has_twist: bool,
     pub parts: RodParts,
-    /// Of the step in hand, so that none allocates.
+    /// Values of the current step, kept so that no step allocates.
     stored: Vec<f64>,
 }
 
@@ -158,7 +158,7 @@ impl Recorder {
         (!in_order || !fits).then_some("the samples are those of another run")
     }
 
-    /// Goes on from what was seen before.
+    /// Continues from what was seen before.
     pub(super) fn recall(&mut self, mut seen: Seen) {
         for sample in &mut seen.samples {
             sample.stored = StoredEnergy::new(self.parts.clone(), sample.stored.to_vec());
@@ -166,7 +166,7 @@ impl Recorder {
         self.seen = seen;
     }
 
-    /// Looks at the present step.
+    /// Records the present step.
     pub(super) fn look(&mut self, sample: &Sample<'_, RodState>) {
         self.look_at_energy(sample);
         if self.seen.outputs.due(sample.time, sample.step) {
@@ -188,7 +188,7 @@ impl Recorder {
         }
     }
 
-    /// Looks at the rod, unless that was done at this time.
+    /// Samples the rod, unless that was done at this time.
     pub(super) fn look_at_rod(&mut self, sample: &Sample<'_, RodState>) {
         let (state, time, seen) = (sample.state, sample.time / self.scales.time, &mut self.seen);
         if seen.samples.last().is_some_and(|last| last.time >= time) {

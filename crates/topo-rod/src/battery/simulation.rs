@@ -24,7 +24,7 @@ pub(super) enum RodSimulation {
     Rkc2(Box<Simulation<RodModel, Rkc2>>),
 }
 
-/// Runs an expression on whichever simulation it is.
+/// Runs an expression on either kind of simulation.
 macro_rules! on_either {
     ($self:expr, $sim:ident => $body:expr) => {
         match $self {

@@ -1,6 +1,6 @@
 //! The only file that names parry: a bounding volume hierarchy over stretches of a curve.
 //!
-//! An edge of a slender rod is shorter than the rod is thick, so a leaf an edge would mostly find neighbours along the arc.
+//! An edge of a slender rod is shorter than the rod is thick, so one leaf per edge would mostly find neighbours along the arc.
 //! One leaf holds a stretch about as long as the reach.
 
 use nalgebra::Vector3;

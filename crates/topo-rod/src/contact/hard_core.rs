@@ -11,7 +11,7 @@ pub struct CorePair {
     pub i: u32,
     /// Larger index.
     pub j: u32,
-    /// Product of the arclengths that the two vertices stand for.
+    /// Product of the arclengths of the two vertices, in h².
     pub weight: f64,
     /// Distance r, in h.
     pub distance: f64,
@@ -26,12 +26,12 @@ const SHARE: f64 = 0.5;
 /// Spacing along the rod, in h, at which pairs are looked for on finer rods.
 const SPACING: f64 = 0.25;
 
-/// What keeps a rod from collapsing where the contact window leaves it alone.
+/// Repulsion that keeps a rod from collapsing inside the contact window, where contact does not act.
 ///
 /// A tube of radius h cannot be bent to a radius below h, so that two points an arc s < πh apart are at least 2h sin(s/2h)
-/// apart in space. The stretch energy alone does not know: its price of an edge of no length is finite, and at θ'h = ±4 and
-/// γ = 1 curls shrink through themselves. Neighbours along the rod closer than half that chord therefore repel by the law of
-/// the contact. Rods of γ ≥ 2 stay above 0.7 of the chord, and no pair is ever found on them.
+/// apart in space. The stretch energy alone does not enforce this: an edge of length zero costs a finite energy, and at θ'h =
+/// ±4 and γ = 1 curls shrink through themselves. Neighbours along the rod closer than half that chord therefore repel by the
+/// law of the contact. Rods of γ ≥ 2 stay above 0.7 of the chord, and no pair is ever found on them.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Core;
 

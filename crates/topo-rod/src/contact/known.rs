@@ -1,4 +1,4 @@
-//! Which pairs the pattern of a matrix holds.
+//! Which pairs are in the pattern of a matrix.
 
 use serde::{Deserialize, Serialize};
 
@@ -41,10 +41,10 @@ impl KnownPairs {
         })
     }
 
-    /// Whether the pattern serves `n` vertices with these pairs in reach, and with `further` ones that ascend as well.
+    /// Whether the pattern can be used for `n` vertices with these pairs in reach, and with `further` ones that ascend as well.
     ///
-    /// A pattern that has grown much too rich costs more in every factorisation than a new symbolic one; one that was as
-    /// rich when it was made would be made as rich again.
+    /// A pattern with far too many pairs costs more in every factorisation than a new symbolic analysis. One that had as many
+    /// pairs when it was made would get as many again.
     pub(crate) fn serve(
         &self,
         n: usize,

@@ -13,7 +13,7 @@ pub struct ActivePair {
     pub i: u32,
     /// Larger index.
     pub j: u32,
-    /// w_i w_j W: quadrature weights times the window.
+    /// w_i w_j W: quadrature weights times the window, in h².
     pub weight: f64,
     /// Distance r, in h.
     pub distance: f64,
@@ -58,7 +58,7 @@ pub(crate) struct PairsMemory {
 }
 
 impl PairsMemory {
-    /// Makes it one that no run leaves behind.
+    /// Makes it one that no run can produce.
     #[cfg(test)]
     pub(crate) fn spoil(&mut self) {
         self.reference.truncate(3);
@@ -97,7 +97,7 @@ impl ContactPairs {
         self.n_rebuilds = memory.n_rebuilds;
     }
 
-    /// A list for strands that act on each other up to the distance `reach`.
+    /// A list for strands that act on each other up to the distance `reach`, with a skin of width `skin`, both in h.
     pub fn new(reach: f64, skin: f64) -> Self {
         Self {
             window: Window::new(reach),
@@ -125,7 +125,8 @@ impl ContactPairs {
         self
     }
 
-    /// Neighbours along the rod too close at the state of the last update, ascending; none unless asked for.
+    /// Neighbours along the rod too close at the state of the last update, ascending; empty unless
+    /// [`with_core`](Self::with_core) was called.
     pub fn core(&self) -> &[CorePair] {
         &self.core
     }
@@ -168,7 +169,7 @@ impl ContactPairs {
         })
     }
 
-    /// Least distance of two vertices of different strands, if any are in reach.
+    /// Least distance between two vertices of different strands, in h, if any are in reach.
     pub fn least_distance(&self) -> Option<f64> {
         self.active
             .iter()
@@ -207,7 +208,7 @@ impl ContactPairs {
         self.cyclic
     }
 
-    /// Makes the list good for `state`; returns whether it had to be rebuilt.
+    /// Rebuilds the list if it does not cover `state`; returns whether it was rebuilt.
     pub fn ensure(&mut self, state: &RodState) -> bool {
         let x = state.vertices();
         let limit = (0.5 * self.skin).powi(2);

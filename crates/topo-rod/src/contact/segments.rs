@@ -2,10 +2,10 @@
 
 use nalgebra::Vector3;
 
-/// Least distance of the segments p0–p1 and q0–q1, scale free and without an absolute tolerance.
+/// Least distance of the segments p0–p1 and q0–q1, without an absolute tolerance, so for any scale.
 ///
-/// The minimum of a convex quadratic on the unit square lies inside or on one of the four sides; the interior candidate is
-/// used when it falls inside, the sides are always tried, so near-parallel segments need no special case.
+/// The minimum of a convex quadratic on the unit square lies inside or on one of the four sides; the interior candidate is used
+/// when it falls inside, the sides are always tried. So nearly parallel segments need no special case.
 pub fn segment_distance(
     p0: &Vector3<f64>,
     p1: &Vector3<f64>,

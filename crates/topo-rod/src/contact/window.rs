@@ -2,10 +2,14 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Smooth step in arclength from 0 below s0 to 1 above s1 = (π/2) s0.
+/// Smooth step in arclength s, in h, from 0 below s_0 to 1 above s_1 = (π/2) s_0.
+///
+/// ```math
+/// W(s) = u^2 (3 - 2 u), \qquad u = \frac{s - s_0}{s_1 - s_0} \text{ clamped to } [0, 1]
+/// ```
 ///
 /// Two points of a tube bent as tightly as it can be (a half circle of radius d/2) are π d/2 apart along the rod when they
-/// are d apart in space: contact inside that arc is geometry of the bend, not touch.
+/// are d apart in space: inside that arc they are close because the rod is bent, not because strands touch.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Window {
     inner: f64,
@@ -21,17 +25,17 @@ impl Window {
         }
     }
 
-    /// Separation up to which W = 0.
+    /// Separation s_0 up to which W = 0, in h.
     pub fn inner(&self) -> f64 {
         self.inner
     }
 
-    /// Separation from which W = 1.
+    /// Separation s_1 from which W = 1, in h.
     pub fn outer(&self) -> f64 {
         self.outer
     }
 
-    /// W at a separation along the rod.
+    /// W at a `separation` along the rod, in h.
     #[inline]
     pub fn weight(&self, separation: f64) -> f64 {
         let u = ((separation - self.inner) / (self.outer - self.inner)).clamp(0.0, 1.0);

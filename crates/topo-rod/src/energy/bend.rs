@@ -4,10 +4,11 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::{At, EnergyTerm, Force, Stiffness};
 
-/// Bending, with the curvature per natural length.
+/// Bending energy, with the curvature per natural length l_0 of an edge. t_i is the unit tangent of edge i.
 ///
 /// ```math
-/// e = Σ_i |kb_i|²/(8 l_0) = Σ_i (1 − c_i)/(2 l_0 (1 + c_i))
+/// e = \sum_i \frac{|\kappa b_i|^2}{8 l_0} = \sum_i \frac{1 - c_i}{2 l_0 (1 + c_i)},
+/// \qquad \kappa b_i = \frac{2\, t_{i-1} \times t_i}{1 + c_i}, \quad c_i = t_{i-1} \cdot t_i
 /// ```
 ///
 /// # Validation

@@ -6,19 +6,20 @@ use super::{At, EnergyKind, EnergyTerm, Force, Stiffness};
 use crate::contact::ActivePair;
 use crate::{RodParameters, Tube};
 
-/// Penalty between vertices of different strands (and of a rod that collapses, see `contact::core`), weighted by their share of arclength and by the window W that leaves
-/// neighbours along the rod out.
+/// Penalty between vertices of different strands. Each pair is weighted by the arclengths of its two vertices and by the
+/// window W, which leaves out neighbours along the rod. Neighbours of a collapsing rod repel by the same law: see `contact::hard_core`.
 ///
 /// ```math
-/// e = Σ_{i<j} w_i w_j W(|s_i − s_j|) V(r_ij),   V(r) = (k_c/2) (d_c − r)₊² (d_c/r)⁴
+/// e = \sum_{i<j} w_i w_j\, W(|s_i - s_j|)\, V(r_{ij}), \qquad
+/// V(r) = \frac{k_c}{2} \max(0, d_c - r)^2 \left( \frac{d_c}{r} \right)^4
 /// ```
 ///
 /// The factor (d_c/r)⁴ makes a deep overlap expensive without making the touch stiff.
 #[derive(Debug, Clone, Copy)]
 pub struct ContactEnergy {
-    /// k_c.
+    /// Stiffness k_c, in E_b/h³.
     pub stiffness: f64,
-    /// d_c.
+    /// Contact diameter d_c, in h.
     pub diameter: f64,
 }
 

@@ -1,4 +1,4 @@
-//! The check that every term must pass.
+//! The check of forces that every term must pass.
 
 use topo_core::{finite_difference_gradient, max_norm};
 
@@ -9,7 +9,8 @@ use crate::{Geometry, RodState};
 /// Largest error of a term's force and torque against fourth-order central differences of its energy with steps of `probe`, over the
 /// largest component of the gradient.
 ///
-/// About 1e-11 to 1e-9 for a smooth term at a `probe` of 2e-3 h; `pairs` are those in reach at `state`, updated as it is moved.
+/// About 1e-11 to 1e-9 for a smooth term at a `probe` of 2e-3 h; `pairs` are those in reach at `state` and are updated as it is
+/// moved.
 ///
 /// # Validation
 /// `bend_force_is_the_gradient` and its neighbours hold the terms of this crate to 1e-7.

@@ -1,4 +1,4 @@
-//! Which terms a rod has: the list of this crate, and terms of the caller's own.
+//! Which terms a rod has: those of this crate, and those of the caller.
 
 use std::fmt;
 use std::sync::Arc;
@@ -7,7 +7,8 @@ use super::{Bend, ContactEnergy, EnergyTerm, RodParts, Stretch, Twist};
 use crate::model::CHANNELS;
 use crate::{RodError, RodParameters, RodState, Tube};
 
-/// The terms that the parameters name, in the order in which their energies are summed. A further term is a line here.
+/// The terms that the parameters name, in the order in which their energies are summed. A further term of this crate is one
+/// line here.
 pub(crate) fn terms_of(rod: &RodParameters, tube: &Tube) -> Vec<Box<dyn EnergyTerm>> {
     fn listed<T: EnergyTerm + 'static>(term: Option<T>) -> Option<Box<dyn EnergyTerm>> {
         term.map(|term| Box::new(term) as Box<dyn EnergyTerm>)
@@ -21,7 +22,7 @@ pub(crate) fn terms_of(rod: &RodParameters, tube: &Tube) -> Vec<Box<dyn EnergyTe
     terms.into_iter().flatten().collect()
 }
 
-/// Checks the name of a term of the caller's own that is added to `terms`.
+/// Checks the name of a caller's term that is added to `terms`.
 ///
 /// # Errors
 /// A name that is no column of a table, or that another part of the energy account has.
@@ -42,7 +43,7 @@ pub(crate) fn checked_name(
     Ok(())
 }
 
-/// How a term of the caller's own is made for the state from which a phase of a battery starts.
+/// How a term of the caller is made for the state from which a phase of a battery starts.
 ///
 /// Cloned and shared between threads with the battery that has it.
 #[derive(Clone)]

@@ -8,14 +8,14 @@ use topo_core::Ledger;
 
 use super::EnergyTerm;
 
-/// What becomes of the energy of a term.
+/// Whether the energy of a term counts as stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum EnergyKind {
     /// It is stored by the charge and released by the discharge: it counts for the energy density, the end of a discharge and its
     /// times.
     Elastic,
-    /// It is the penalty of a constraint, as that of contact: it is in the books, but not part of what is released.
+    /// It is the penalty of a constraint, as that of contact: it is in the energy account, but not part of what is released.
     Constraint,
 }
 
@@ -24,7 +24,7 @@ pub enum EnergyKind {
 pub struct EnergyPart {
     /// Name of the term.
     pub name: &'static str,
-    /// What becomes of its energy.
+    /// Whether its energy counts as stored.
     pub kind: EnergyKind,
 }
 
@@ -97,7 +97,7 @@ impl RodParts {
         elastic.map(|part| part.name).collect()
     }
 
-    /// Elastic energy in the books of a rod with these parts.
+    /// Elastic energy in the account of a rod with these parts.
     pub(crate) fn elastic_of(&self, books: &Ledger) -> f64 {
         let constraints = self.iter().filter(|p| p.kind == EnergyKind::Constraint);
         let held: f64 = constraints
@@ -107,7 +107,7 @@ impl RodParts {
     }
 }
 
-/// Stored energy by part; the numbers alone in the order of the parts.
+/// Stored energy by part. Serialised as numbers alone, in the order of the parts.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct StoredEnergy {
@@ -139,7 +139,7 @@ impl StoredEnergy {
             .zip(self.energies.iter().copied())
     }
 
-    /// Energy of the part `name`; 0 for a term that the rod has not.
+    /// Energy of the part `name`; 0 for a term that the rod does not have.
     pub fn of(&self, name: &str) -> f64 {
         let mut parts = self.by_part();
         parts.find(|(p, _)| p.name == name).map_or(0.0, |(_, e)| e)

@@ -5,17 +5,17 @@ use nalgebra::Matrix3;
 use super::{At, EnergyTerm, Force, Stiffness};
 use crate::RodParameters;
 
-/// Stretch with γ = E/E_b.
+/// Stretch energy of edges e_j of natural length l_0, with γ = E/E_b.
 ///
 /// ```math
-/// e = (γ/2) Σ_j l_0 (|e_j|/l_0 − 1)²
+/// e = \frac{\gamma}{2} \sum_j l_0 \left( \frac{|e_j|}{l_0} - 1 \right)^2
 /// ```
 ///
 /// # Validation
 /// `val_stretch_decay_rate_of_a_straight_rod`.
 #[derive(Debug, Clone, Copy)]
 pub struct Stretch {
-    /// γ.
+    /// Ratio γ of stretching to bending modulus: no unit.
     pub ratio: f64,
 }
 

@@ -3,19 +3,21 @@
 use super::{At, EnergyTerm, Force, Stiffness};
 use crate::RodParameters;
 
-/// Twist, with stiffness α relative to bending.
+/// Twist energy, with stiffness α relative to bending; m_i is the integrated twist of vertex i, in radians.
 ///
 /// ```math
-/// e = Σ_i α m_i²/(8 l_0),   ∂m_i/∂e_{i−1} = kb_i/(2|e_{i−1}|),   ∂m_i/∂e_i = kb_i/(2|e_i|)
+/// e = \sum_i \frac{\alpha\, m_i^2}{8 l_0}, \qquad
+/// \frac{\partial m_i}{\partial e_{i-1}} = \frac{\kappa b_i}{2 |e_{i-1}|}, \quad
+/// \frac{\partial m_i}{\partial e_i} = \frac{\kappa b_i}{2 |e_i|}
 /// ```
 ///
-/// Its second derivatives in x are left out of the Newton matrix: twist relaxes by the edges' rotation much faster.
+/// Its second derivatives in x are left out of the Newton matrix: twist relaxes much faster by the rotation of the edges.
 ///
 /// # Validation
 /// `val_twist_decay_rate_of_a_straight_rod`, `val_michell_zajac_ring_buckles_at_the_critical_twist`.
 #[derive(Debug, Clone, Copy)]
 pub struct Twist {
-    /// α.
+    /// Ratio α of twist to bending stiffness: no unit.
     pub ratio: f64,
 }
 
@@ -27,7 +29,8 @@ impl Twist {
         })
     }
 
-    /// Torque τ_i = ∂e/∂m_i carried by a vertex with integrated twist `m`.
+    /// Torque τ_i = ∂e/∂m_i carried by a vertex with integrated twist `m` (in radians), per area, in E_b h; `rest_length` is in
+    /// h.
     #[inline]
     pub fn torque(&self, m: f64, rest_length: f64) -> f64 {
         self.ratio * m / (4.0 * rest_length)

@@ -1,4 +1,4 @@
-//! What the model books: energy by term, dissipation by channel, work of the ends, and its own work by component.
+//! The account of the model: energy by term, dissipation by channel, work of the ends, and computational work by component.
 
 use nalgebra::Vector3;
 use topo_core::{Ledger, LinearlyImplicit, Rejection};
@@ -11,7 +11,7 @@ use crate::guard::RiseBudget;
 use crate::newton::NewtonTwist;
 use crate::viscosity::{TwistViscosity, centreline_form, twist_form};
 
-/// What a run has worked, by component; a component that the scene leaves out stays at zero.
+/// Computational work of a run by component; a component that the scene leaves out stays at zero.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct WorkAccount {
     /// Evaluations of energy and force.
@@ -58,7 +58,7 @@ impl WorkAccount {
 }
 
 impl RodModel {
-    /// Starts the account at `state` (a model learns once where its run starts).
+    /// Starts the account at `state`. Call it once, at the start of a run.
     ///
     /// # Errors
     /// A rod that folds back on itself has no energy.
@@ -70,7 +70,7 @@ impl RodModel {
         Ok(())
     }
 
-    /// Books the energy that a cut took before this run started: the account then starts at what the closed rod held.
+    /// Records the energy that a cut removed before this run started: the account then starts at the energy of the closed rod.
     pub(crate) fn record_cut(&mut self, closed: f64, removed: f64) {
         let open = self.at.energies.clone();
         let mut ledger = self.empty_ledger();
@@ -84,18 +84,18 @@ impl RodModel {
         self.ledger = ledger;
     }
 
-    /// Books of all terms, with nothing in them.
+    /// The empty account of all terms.
     pub(super) fn empty_ledger(&self) -> Ledger {
         let names: Vec<&'static str> = self.terms.iter().map(|t| t.name()).collect();
         Ledger::new(&names, &CHANNELS)
     }
 
-    /// Energy books of the run.
+    /// Energy account of the run.
     pub fn account(&self) -> &Ledger {
         &self.ledger
     }
 
-    /// What was worked so far, by component.
+    /// Computational work so far, by component.
     pub fn work(&self) -> WorkAccount {
         let mobility = self
             .rotation
@@ -203,14 +203,14 @@ impl RodModel {
         work
     }
 
-    /// Energy that viscosity and friction take over a step.
+    /// Energy that viscosity and friction dissipate in a step.
     ///
     /// A mode that decays as e^(−λt) dissipates its secant form δ·M δ/dt times φ(z) = (z/2) coth(z/2), z = λ dt, and the rate
     /// changes over the step by a dt = −λ δ. Modes of all λ are summed by a fraction in W = 1 + g Z, Z = dt M⁻¹H, that has
     /// the limits of φ − 1 for slow modes, z²/12, and for fast ones, z/2:
     ///
     /// ```math
-    /// D dt = δ·M δ + \tfrac{dt^4}{12}\,[6 g\, a·M W⁻¹a + (1 − 6 g)\, (W⁻¹a)·M W⁻¹a]
+    /// D\, dt = \delta \cdot M \delta + \tfrac{dt^4}{12} \left[ 6 g\, a \cdot M W^{-1} a + (1 - 6 g)\, (W^{-1} a) \cdot M W^{-1} a \right]
     /// ```
     ///
     /// As φ is concave in z², one mode with the mean z² dissipates at least as much as all: that bound is used without W.

@@ -7,11 +7,11 @@ use crate::contact::{ActivePair, ContactPairs};
 
 /// Which pairs will touch within the next step.
 ///
-/// Contact pushes in one direction only. A matrix made where two vertices are just apart knows nothing of it: the step runs
+/// Contact pushes in one direction only. A matrix made where two vertices are just apart does not contain it: the step runs
 /// them into each other by much more than the tolerance, is refused or bounces off, and the next matrix is made just apart
-/// again. Stiff strands in that cycle take steps a hundred times too short. With the pair in the matrix the step ends
-/// about where they touch. Vertices that part, or that are farther apart than a part of the tolerance, are left free:
-/// a matrix that holds what should move makes an error that the embedded estimate does not see.
+/// again. Stiff strands in that cycle take steps a hundred times too short. With the pair in the matrix the step ends about
+/// where they touch. Vertices that part, or that are farther apart than a part of the tolerance, are left out: a matrix that
+/// holds what should move causes an error that the embedded estimate does not see.
 ///
 /// The pairs are looked for only for a few steps after a refused one, as ordinary runs need none of this.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -55,7 +55,7 @@ impl ApproachingPairs {
         self.n_wary > 0
     }
 
-    /// A matrix is asked for at the state `stamp`: when that happens twice, the first step from there was refused.
+    /// Called when a matrix is made at the state `stamp`: if that happens twice, the first step from there was refused.
     pub(super) fn look_out(&mut self, stamp: u64) {
         if self.prepared.replace(stamp) == Some(stamp) {
             self.n_wary = WARY;

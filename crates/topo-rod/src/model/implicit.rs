@@ -1,4 +1,4 @@
-//! What implicit and stabilised integrators ask of the rod: the Newton matrix, and a bound of the spectrum.
+//! What implicit and stabilised integrators need from the rod: the Newton matrix, and a bound of the spectrum.
 
 use topo_core::{LinearlyImplicit, Model, Rejection, SpectralBound};
 

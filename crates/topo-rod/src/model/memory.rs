@@ -1,4 +1,4 @@
-//! What a rod's model must remember between two steps, so that a run goes on from a checkpoint to the same bits.
+//! What a rod's model must remember between two steps, so that a run continues from a checkpoint to the same bits.
 //!
 //! Everything that follows from the state is computed again; what an earlier state left behind is remembered: the list of pairs (by
 //! where it was built), the patterns of the matrices, the Newton matrix in use, pairs expected to touch, guards and the account.
@@ -117,7 +117,7 @@ impl RodModel {
         }
     }
 
-    /// Goes on from what a model of the same rod remembered at `state`; false if that does not fit together.
+    /// Continues from what a model of the same rod remembered at `state`; false if that is inconsistent.
     pub(crate) fn recall(
         &mut self,
         state: &RodState,
@@ -193,7 +193,7 @@ impl ModelMemory {
         self.expected.is_wary()
     }
 
-    /// Whether the matrix in use serves the `next` step too.
+    /// Whether the matrix in use is good for the `next` step too.
     pub(crate) fn is_reusing(&self, next: &Self) -> bool {
         let n_uses = |memory: &Self| memory.frozen.map_or(0, |frozen| frozen.n_uses);
         n_uses(next) > n_uses(self) && n_uses(self) > 0
@@ -225,7 +225,7 @@ impl ModelMemory {
         }
     }
 
-    /// Makes a part one that no run leaves behind; false for a part that may be anything.
+    /// Gives a part a value that no run can produce; false for a part that may have any value.
     pub(crate) fn spoil(&mut self, part: usize) -> bool {
         match PARTS[part] {
             "pairs" => self.pairs.spoil(),

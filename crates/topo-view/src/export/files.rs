@@ -60,7 +60,7 @@ pub(super) fn table<T: DeserializeOwned>(case: &Path, name: &str) -> Result<Vec<
 pub(super) fn damaged(case: &Path, name: &str, reason: &str) -> ViewError {
     refusal(
         &case.join(name),
-        &format!("{reason}; the case is damaged: run its scene again, which computes it anew"),
+        &format!("{reason}; the case is damaged: run its scene again, which computes it again"),
     )
 }
 

@@ -71,7 +71,7 @@ impl<'a> Finished<'a> {
             self.folder,
             &format!(
                 "a case of results version {found} (topo {by}), and this program reads version {version}: run its scene again, which \
-                 computes the case anew, or export it with the program that computed it"
+                 computes the case again, or export it with the program that computed it"
             ),
         ))
     }

@@ -25,49 +25,49 @@ def opened(path):
     errors = vtk.vtkStringOutputWindow()
     vtk.vtkOutputWindow.SetInstance(errors)
     reader = READERS[path.suffix]()
-    told = {"can_read": bool(reader.CanReadFile(str(path)))}
+    found = {"can_read": bool(reader.CanReadFile(str(path)))}
     reader.SetFileName(str(path))
     reader.Update()
-    told["said"] = errors.GetOutput() + ("" if reader.GetErrorCode() == 0 else f" error code {reader.GetErrorCode()}")
+    found["said"] = errors.GetOutput() + ("" if reader.GetErrorCode() == 0 else f" error code {reader.GetErrorCode()}")
     data = reader.GetOutput()
-    told["points"], told["cells"] = data.GetNumberOfPoints(), data.GetNumberOfCells()
+    found["points"], found["cells"] = data.GetNumberOfPoints(), data.GetNumberOfCells()
     at_points = data.GetPointData()
-    told["arrays"], told["not_finite"] = {}, []
+    found["arrays"], found["not_finite"] = {}, []
     for k in range(at_points.GetNumberOfArrays()):
         array = at_points.GetArray(k)
-        told["arrays"][array.GetName()] = array.GetNumberOfComponents()
-        if array.GetNumberOfTuples() != told["points"]:
-            told["said"] += f" {array.GetName()} has {array.GetNumberOfTuples()} tuples"
+        found["arrays"][array.GetName()] = array.GetNumberOfComponents()
+        if array.GetNumberOfTuples() != found["points"]:
+            found["said"] += f" {array.GetName()} has {array.GetNumberOfTuples()} tuples"
         if not finite(vtk_to_numpy(array)):
-            told["not_finite"].append(array.GetName())
-    if told["points"] > 0 and not np.isfinite(data.GetBounds()).all():
-        told["said"] += " points that are not finite"
+            found["not_finite"].append(array.GetName())
+    if found["points"] > 0 and not np.isfinite(data.GetBounds()).all():
+        found["said"] += " points that are not finite"
     field = data.GetFieldData()
-    told["facts"] = {}
+    found["facts"] = {}
     for k in range(field.GetNumberOfArrays()):
         array = field.GetAbstractArray(k)
         if isinstance(array, vtk.vtkStringArray):
-            told["facts"][array.GetName()] = array.GetValue(0)
+            found["facts"][array.GetName()] = array.GetValue(0)
         else:
             values = vtk_to_numpy(array).ravel().tolist()
-            told["facts"][array.GetName()] = values[0] if len(values) == 1 else values
+            found["facts"][array.GetName()] = values[0] if len(values) == 1 else values
     if path.suffix == ".vtp":
         corners = data.GetCell(0).GetPointIds()
-        told["corners"] = [corners.GetId(i) for i in range(corners.GetNumberOfIds())]
-    return told
+        found["corners"] = [corners.GetId(i) for i in range(corners.GetNumberOfIds())]
+    return found
 
 
 def archive(path):
-    told = {"arrays": {}, "not_finite": [], "facts": {}}
+    found = {"arrays": {}, "not_finite": [], "facts": {}}
     with np.load(path, allow_pickle=False) as all_of_it:
         for name in all_of_it.files:
             values = all_of_it[name]
-            told["arrays"][name] = list(values.shape)
+            found["arrays"][name] = list(values.shape)
             if not finite(values):
-                told["not_finite"].append(name)
+                found["not_finite"].append(name)
             elif values.ndim == 0:
-                told["facts"][name] = values.item()
-    return told
+                found["facts"][name] = values.item()
+    return found
 
 
 def collection(path):
@@ -75,10 +75,10 @@ def collection(path):
     return {"files": [[float(e.get("timestep")), e.get("file")] for e in entries]}
 
 
-told = {}
+found = {}
 for folder in sys.argv[1:]:
-    told[folder] = {}
+    found[folder] = {}
     for path in sorted(Path(folder).iterdir()):
         look = {".npz": archive, ".pvd": collection}.get(path.suffix, opened)
-        told[folder][path.name] = look(path)
-print(json.dumps(told))
+        found[folder][path.name] = look(path)
+print(json.dumps(found))

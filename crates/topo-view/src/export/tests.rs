@@ -171,7 +171,7 @@ fn check_colloid(report: &Value) {
 }
 
 #[test]
-fn fields_are_kept_where_asked_for_and_their_absence_is_told() {
+fn fields_are_kept_where_asked_for_and_their_absence_is_reported() {
     let dir = tempfile::tempdir().unwrap();
     let case = colloid(dir.path(), COLLOID, false);
     let to = dir.path().join("to");
@@ -200,7 +200,7 @@ fn fields_are_kept_where_asked_for_and_their_absence_is_told() {
 }
 
 #[test]
-fn a_fibre_leaves_every_file_that_is_told_of() {
+fn a_fibre_leaves_every_file_that_is_listed() {
     let dir = tempfile::tempdir().unwrap();
     let made = write(&fibre(dir.path()), &dir.path().join("to"), &ALL).unwrap();
     assert!(made.files.len() > 3 && made.files.iter().all(|f| f.exists()));

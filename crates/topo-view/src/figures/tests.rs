@@ -1,4 +1,4 @@
-//! Every figure drawn from made-up results.
+//! Every figure drawn from artificial results.
 
 use super::*;
 use crate::{gallery, provenance, reproduction, scenes, synthetic};
@@ -46,7 +46,7 @@ fn check_files(results: &Path, name: &str) {
 }
 
 #[test]
-fn every_figure_is_drawn_with_its_files_and_told_in_the_gallery() {
+fn every_figure_is_drawn_with_its_files_and_shown_in_the_gallery() {
     let dir = tempfile::tempdir().unwrap();
     synthetic::results(dir.path(), 14, &[-2.0, -1.0, 0.0, 1.0, 2.0]);
     synthetic::nematic(dir.path());
@@ -140,7 +140,7 @@ fn one_state_is_enough() {
 }
 
 #[test]
-fn missing_results_and_unknown_names_are_told() {
+fn missing_results_and_unknown_names_are_reported() {
     let dir = tempfile::tempdir().unwrap();
     let e = draw(ALL[0], &context(dir.path())).unwrap_err();
     assert!(e.to_string().contains("sweep.csv"));
@@ -154,7 +154,7 @@ fn missing_results_and_unknown_names_are_told() {
     assert_eq!((figures.len(), movies.len()), (0, 1));
 }
 
-/// Draws made-up results at full detail into the folder that `TOPO_LOOK` names.
+/// Draws artificial results at full detail into the folder that `TOPO_LOOK` names.
 #[test]
 #[ignore = "for looking at, not for checking"]
 fn look() {

@@ -152,6 +152,6 @@ pub(super) fn other_version(folder: &Path, battery: &dyn Shown) -> Option<String
     let found = run["versions"]["results"].as_u64()?;
     let now = u64::from(battery.results());
     (found != now).then(|| {
-        format!("computed with results version {found}, and now is {now}: columns may mean something else; run the scene again to have it anew")
+        format!("computed with results version {found}, and now is {now}: columns may mean something else; run the scene again to compute it again")
     })
 }

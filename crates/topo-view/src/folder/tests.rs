@@ -1,4 +1,4 @@
-//! Folders of made-up results, drawn and refused.
+//! Folders of artificial results, drawn and refused.
 
 use super::{Made, draw, find};
 use crate::error::ViewError;

@@ -60,7 +60,7 @@ impl Canvas {
         let place = format!(r#"x="{x:.2}" y="{y:.2}" font-size="{:.2}""#, style.size);
         let looks = format!(r#"text-anchor="{anchor}"{weight}{turn}>{spans}</text>"#);
         if style.halo {
-            // below all of the label: the rim of a subscript would cover what it hangs on
+            // below all of the label: the rim of a subscript would cover what it belongs to
             let rim =
                 r##"fill="#ffffff" stroke="#ffffff" stroke-width="3" stroke-linejoin="round""##;
             self.raw(&format!("<text {place} {rim} {looks}"));

@@ -108,7 +108,7 @@ pub const CLAIMS: [Claim; 13] = [
         published: "Fig. 5b",
         figure: "nematic-discharge",
         depends: "the thickness of the cell, for buckled states",
-        rule: "t99.9 is at most R²/ΓL for all unbuckled states; in part if for some; buckled ones, which are slow by another claim, are told beside",
+        rule: "t99.9 is at most R²/ΓL for all unbuckled states; in part if for some; buckled ones, which are slow by another claim, are listed beside",
         look: discharging::decades,
         other: None,
         doubt: |_| None,

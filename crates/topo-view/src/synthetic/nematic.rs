@@ -1,4 +1,4 @@
-//! A made-up nematic sweep.
+//! A artificial nematic sweep.
 
 use crate::data::write;
 use serde::Serialize;

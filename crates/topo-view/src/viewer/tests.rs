@@ -176,7 +176,7 @@ fn browser_the_viewer_turns_slides_plays_and_chooses() {
             );
             assert_ne!(t["ruler"], "", "{t}");
             let frames = t["frames"].as_array().unwrap();
-            // the made-up colloid does not change after its ring is gone
+            // the artificial colloid does not change after its ring is gone
             let n_moving = if battery == "elastic" { 11 } else { 3 };
             for pair in frames[..n_moving].windows(2) {
                 assert!(

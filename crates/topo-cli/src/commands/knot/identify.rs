@@ -7,6 +7,7 @@ mod tests;
 use crate::cli::IdentifyArgs;
 use crate::error::CliError;
 use crate::output;
+use crate::progress::waiting;
 use report::{Component, Finding, Frame, Report};
 use std::fmt::Write as _;
 use std::process::ExitCode;
@@ -20,7 +21,7 @@ const NOT_CERTAIN: u8 = 3;
 
 /// Names what the file holds. With `--json` the keys of the report also stand beside those of every command.
 pub(super) fn run(args: &IdentifyArgs, table: &KnotTable) -> Result<ExitCode, CliError> {
-    let (report, text) = look(args, table)?;
+    let (report, text) = waiting("naming the curve", || look(args, table))?;
     report
         .warnings
         .iter()

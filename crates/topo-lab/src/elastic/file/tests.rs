@@ -267,11 +267,11 @@ fn what_is_no_number_list_or_range_is_refused() {
         ),
         (
             "slenderness = [50, \"a\"]",
-            ["line 3: rod.slenderness = [50, \"a\"]", "list of numbers"],
+            ["line 3: rod.slenderness = \"a\"", "write a number"],
         ),
         (
             "seed = [1, 1.5]",
-            ["line 3: rod.seed = 1.5", "whole numbers"],
+            ["line 3: rod.seed = 1.5", "a whole number"],
         ),
         (
             "seed = { from = 1, to = 2, n = 3 }",
@@ -281,10 +281,13 @@ fn what_is_no_number_list_or_range_is_refused() {
             "reading = []",
             ["line 3: rod.reading = []", "leave the key out"],
         ),
-        ("reading = [\"hard\", \"soft\"]", ["line 3", "`soft`"]),
+        (
+            "reading = [\"hard\", \"soft\"]",
+            ["line 3: rod.reading = \"soft\"", "\"own-length\""],
+        ),
         (
             "slenderness = [50,\n 40]\nreading = \"soft\"",
-            ["line 5", "`soft`"],
+            ["line 5: rod.reading = \"soft\"", "\"own-length\""],
         ),
     ]);
 }

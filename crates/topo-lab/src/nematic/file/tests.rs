@@ -353,7 +353,7 @@ fn materials_flows_and_grids_out_of_range_are_refused() {
         ),
         (
             "pattern = { charge = 20000 }",
-            ["line 3: nematic.pattern.charge = 20000", "at most 10000"],
+            ["line 3: nematic.pattern.charge = 20000", "to 10000"],
         ),
         (
             "periodic = true\nsides = { walled = {} }",
@@ -399,7 +399,7 @@ fn what_changes_nothing_is_refused() {
         ),
         (
             "[discharge.flow]\n",
-            ["line 3: discharge.flow = given", "[flow]"],
+            ["line 3: discharge.flow = a table", "did you mean `flow`"],
         ),
     ]);
 }

@@ -1,4 +1,4 @@
-//! What of a charge is kept from moment to moment, and whether a checkpoint fits.
+//! What a checkpoint of a charge keeps, and whether a checkpoint fits.
 
 use serde::{Deserialize, Serialize};
 use topo_core::{Fire, MOST_COUNTED};
@@ -29,7 +29,7 @@ pub(super) struct Moving {
     pub last_order: Option<f64>,
 }
 
-/// What of a charge is kept from moment to moment.
+/// What a checkpoint of a charge keeps between relaxations.
 #[derive(Clone, Default, Serialize, Deserialize)]
 pub(super) struct Progressed {
     /// Start fields gone through.
@@ -77,7 +77,7 @@ impl Progressed {
     }
 }
 
-/// A charge on its way; one that is done has gone through all seeds and its check.
+/// A charge in progress; a finished one has gone through all seeds and its check.
 #[derive(Serialize, Deserialize)]
 pub(super) struct Unfinished {
     pub progressed: Progressed,

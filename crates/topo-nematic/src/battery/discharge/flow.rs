@@ -13,7 +13,7 @@ use crate::stabilised::{Drift, DriftMemory, Stabilised};
 use crate::stokes::StokesError;
 use crate::{FlowParameters, NematicError};
 
-/// The flow of a discharge and what is remembered of it.
+/// The flow of a discharge and its memory.
 ///
 /// After a refused step the velocity is that of the refused trial: only what [`settle`](Self::settle) kept counts.
 pub(super) struct CoupledFlow {
@@ -70,7 +70,7 @@ impl CoupledFlow {
         }
     }
 
-    /// Finds the velocity at the present field, or goes on from a memory.
+    /// Computes the velocity at the present field, or continues from a memory.
     ///
     /// # Errors
     /// Why no velocity was found.
@@ -83,7 +83,7 @@ impl CoupledFlow {
         field.forget_earlier_drift();
         let mut is_known = false;
         if let Some(memory) = memory {
-            // A checkpoint of this very case fits; were it not so, the flow would start anew.
+            // A checkpoint of this very case fits; were it not so, the flow would start again.
             is_known = self.coupling.restore(memory.coupling);
             self.max_speed = memory.max_speed;
             self.boundary_residual = memory.boundary_residual;

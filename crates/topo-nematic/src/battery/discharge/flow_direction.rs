@@ -1,11 +1,12 @@
-//! Whether the flow of a discharge still goes the way it went first.
+//! Whether the flow of a discharge still has its first direction.
 
 use serde::{Deserialize, Serialize};
 
 use crate::NematicState;
 use crate::stokes::MacField;
 
-/// The first velocity of a discharge that was looked at, in units of its largest component, in every cell; zero outside the fluid.
+/// The first velocity of a discharge that was sampled, in units of its largest component, in every cell; zero outside the
+/// fluid.
 ///
 /// A direction needs no more than single precision.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -17,7 +18,7 @@ impl FlowDirection {
     /// Correlation of a velocity with the first one, over the cells of the fluid: 1 along it, -1 against it.
     ///
     /// ```math
-    /// c(t) = <u(t) . u(t_1)> / (|u(t)| |u(t_1)|)
+    /// c(t) = \frac{\langle u(t) \cdot u(t_1) \rangle}{\|u(t)\|\, \|u(t_1)\|}
     /// ```
     ///
     /// t_1 is the first time at which the fluid moves; `None` while it does not.

@@ -18,12 +18,12 @@ const MOST_RISE: f64 = 1e-6;
 const ROTATION: usize = 0;
 const VISCOUS: usize = 1;
 
-/// A switched nematic, as its surface stands at present.
+/// A switched nematic with the present state of its surface.
 pub(super) struct SwitchedModel<'a, T> {
     pub switched: &'a SwitchedNematic,
     pub kernel: Kernel<T>,
     pub ramp: Option<Ramp<T>>,
-    /// Share of the ramp at which the surface stands.
+    /// Share of the ramp that the surface has reached.
     pub ramped: f64,
     pub flow: Option<CoupledFlow>,
     /// Energy of the present field.
@@ -73,7 +73,7 @@ impl<'a, T: Real> SwitchedModel<'a, T> {
         material.order().max(1e-3)
     }
 
-    /// Lets the surface stand as at `time` of its ramp, and books the work of that; false without a ramp.
+    /// Sets the surface to its state at `time` of the ramp and records the work of that; false without a ramp.
     pub fn move_surface(&mut self, time: f64, q: &[T]) -> bool {
         let Some(ramp) = &self.ramp else {
             return false;
@@ -87,7 +87,7 @@ impl<'a, T: Real> SwitchedModel<'a, T> {
         true
     }
 
-    /// Keeps the books of a step of length `dt` to energy `next`, from the sums of H:H at both its ends.
+    /// Updates the energy account after a step of length `dt` to energy `next`, from the sums of H:H at both its ends.
     pub fn accepted(&mut self, dt: f64, squares: [f64; 2], next: EnergyParts) {
         let material = &self.switched.charged.battery.parameters().material;
         let cell = self.kernel.domain.grid.spacing().powi(3);

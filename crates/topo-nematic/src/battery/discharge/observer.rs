@@ -49,7 +49,7 @@ pub(super) struct SampleRecorder {
 }
 
 impl SampleRecorder {
-    /// A recorder that goes on from `run`, for a material of order `order`; `unit` is the diffusion time.
+    /// A recorder that continues from `run`, for a material of order `order`; `unit` is the diffusion time.
     pub fn new(
         settings: &DischargeSettings,
         unit: f64,

@@ -1,4 +1,4 @@
-//! An anchoring that is switched little by little.
+//! An anchoring that is switched gradually.
 
 use crate::NematicState;
 use crate::anchoring::Anchoring;
@@ -40,7 +40,8 @@ impl<T: Real> Ramp<T> {
         }
     }
 
-    /// Length of a step from `time` on, not longer than `dt`: a ramp takes so many steps, and ends with one.
+    /// Length of a step from `time` on, at most `dt`: a ramp takes at least a fixed number of steps, and a step ends at its
+    /// end.
     pub fn step(&self, dt: f64, time: f64) -> f64 {
         let left = self.duration - time;
         let dt = dt.min(self.duration / RAMP_STEPS);

@@ -1,4 +1,4 @@
-//! A discharge on its way, as its checkpoint keeps it.
+//! A discharge in progress, as its checkpoint keeps it.
 
 use serde::{Deserialize, Serialize};
 use topo_core::{Counters, DischargeCurve, Ledger, MOST_COUNTED, StepControl, TimeStepping};
@@ -11,7 +11,7 @@ use crate::{EnergyParts, NematicError, NematicState};
 
 const SCHEMA: &str = "nematic-discharge/6";
 
-/// A discharge that is not finished, but for its field and its flow.
+/// A discharge that is not finished, without its field and its flow.
 #[derive(Clone, Serialize, Deserialize)]
 pub(super) struct Unfinished {
     pub steps: TimeStepping,
@@ -21,14 +21,14 @@ pub(super) struct Unfinished {
     pub samples: Vec<NematicSample>,
     pub direction: FlowDirection,
     pub cpu_seconds: f64,
-    /// Share of the ramp at which the surface stands.
+    /// Share of the ramp that the surface has reached.
     pub ramped: f64,
 }
 
 /// What a checkpoint holds, its field in the layout of states.
 type Saved = (Unfinished, Vec<f64>, Option<CoupledMemory>);
 
-/// From where a discharge goes on.
+/// The state from which a discharge continues.
 pub(super) struct Start {
     pub run: Unfinished,
     pub memory: Option<CoupledMemory>,

@@ -16,7 +16,7 @@ use crate::real::Real;
 use crate::stokes::Drive;
 use crate::{NematicError, NematicState};
 
-/// First step, in h²/(Gamma L).
+/// First step, in h²/(Γ L).
 const FIRST_STEP: f64 = 1e-3;
 
 /// A discharge in progress.

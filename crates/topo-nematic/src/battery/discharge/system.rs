@@ -46,7 +46,7 @@ impl<'a, T: Real> System<'a, T> {
         })
     }
 
-    /// Makes energy, velocity and rate of the field known; `memory` is that of the flow in a run that goes on.
+    /// Computes energy, velocity and rate of the field; `memory` is that of the flow in a resumed run.
     ///
     /// # Errors
     /// When no velocity is found.
@@ -72,7 +72,7 @@ impl<'a, T: Real> System<'a, T> {
         self.model.kernel.gather(&self.field.q, state.q_mut());
     }
 
-    /// Books what the event `name` at `time` removed, `before` being the energy before it.
+    /// Records what the event `name` at `time` removed; `before` is the energy before it.
     pub fn book_event(&mut self, name: &'static str, time: f64, before: f64) {
         let now = self.model.energy;
         let model = &mut self.model;
@@ -116,7 +116,7 @@ impl<T: Real> Advance for System<'_, T> {
         }
     }
 
-    /// The error is in orders of equilibrium.
+    /// The error is in units of the equilibrium order.
     fn try_step(&mut self, time: f64, dt: f64, control: &StepControl) -> Result<f64, Rejection> {
         let (model, field) = (&mut self.model, &mut self.field);
         // The surface changes at the middle of each step; what that takes is work.

@@ -19,7 +19,7 @@ pub(super) struct History {
     n_pushed: usize,
 }
 
-/// What a checkpoint keeps of a history: the basis is made anew from it.
+/// What a checkpoint keeps of a history: the basis is rebuilt from it.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(in crate::stokes) struct SavedHistory {
     solutions: [Vec<f64>; N_KEPT],

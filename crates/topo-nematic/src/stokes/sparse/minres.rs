@@ -11,7 +11,10 @@ const CHUNK: usize = 1 << 14;
 /// Vectors of the iteration, kept from one solve to the next.
 ///
 /// # References
-/// `paige1975`, `elman2014`
+/// [paige1975], [elman2014]
+///
+/// [paige1975]: https://doi.org/10.1137/0712047
+/// [elman2014]: https://doi.org/10.1093/acprof:oso/9780199678792.001.0001
 pub(super) struct Minres {
     solution: Vec<f64>,
     /// Lanczos vectors, the newer one first the right-hand side.

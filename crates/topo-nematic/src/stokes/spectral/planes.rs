@@ -11,7 +11,7 @@ pub(super) struct Planes<'a> {
     pub(super) column: usize,
     /// Whether a plane has forces; else its tiles are stale.
     pub(super) forced: &'a (dyn Fn(usize) -> bool + Sync),
-    /// Whether a plane's velocities are wanted.
+    /// Whether a plane's velocities are needed.
     pub(super) wanted: &'a (dyn Fn(usize) -> bool + Sync),
 }
 

@@ -11,7 +11,7 @@ pub(super) struct Symbol {
     pub gradient: [Vec<Complex64>; 3],
     /// Of minus the second difference: |gradient|^2.
     pub laplacian: [Vec<f64>; 3],
-    /// h^2/eta over the factor that transforms there and back leave.
+    /// h^2/η over the factor that transforms there and back leave.
     pub scale: f64,
     /// The same without the transform along z.
     pub plane_scale: f64,
@@ -35,7 +35,7 @@ impl Symbol {
     }
 }
 
-/// 1 - exp(-2 pi i k/n), without cancellation.
+/// 1 - exp(-2 π i k/n), without cancellation.
 fn gradient(k: usize, n: usize) -> Complex64 {
     let half = 0.5 * TAU * k as f64 / n as f64;
     2.0 * half.sin() * Complex64::new(half.sin(), half.cos())

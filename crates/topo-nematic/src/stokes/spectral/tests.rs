@@ -21,7 +21,7 @@ fn noise(grid: &Grid) -> MacField {
     field
 }
 
-/// eta lap u + f, which must be a gradient, on the faces.
+/// η lap u + f, which must be a gradient, on the faces.
 fn imbalance(grid: &Grid, viscosity: f64, u: &MacField, f: &MacField) -> MacField {
     let mut out = MacField::zeros(grid);
     let (cells, faces, h) = (grid.cells(), grid.faces(), grid.spacing());

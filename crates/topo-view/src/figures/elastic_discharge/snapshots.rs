@@ -310,7 +310,7 @@ mod tests {
     }
 
     #[test]
-    fn times_are_told_briefly() {
+    fn times_are_reported_briefly() {
         assert_eq!(time_label(0.0), "*t* = 0");
         assert_eq!(time_label(0.0123), "0.012 *T*_{0}");
         assert_eq!(time_label(20.55), "20.6 *T*_{0}");

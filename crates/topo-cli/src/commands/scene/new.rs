@@ -1,0 +1,57 @@
+//! `topo scene new`: a scene to begin with.
+
+use std::fs::OpenOptions;
+use std::io::Write as _;
+
+use topo_lab::folder_of;
+
+use crate::batteries::Batteries;
+use crate::cli::NewArgs;
+use crate::error::CliError;
+use crate::output;
+
+/// Writes the scene.
+pub fn run(args: &NewArgs, batteries: &Batteries<'_>) -> Result<(), CliError> {
+    let described = batteries.iter().filter_map(|b| Some((b, b.keys()?)));
+    let described: Vec<_> = described.collect();
+    let found = described.iter().find(|(b, _)| b.name() == args.battery);
+    let Some((battery, keys)) = found else {
+        let names: Vec<&str> = described.iter().map(|(b, _)| b.name()).collect();
+        return Err(CliError::Argument {
+            key: "--battery",
+            value: args.battery.clone(),
+            remedy: format!("write one of {}", names.join(", ")),
+        });
+    };
+    // a name that no results can go to is better refused now
+    folder_of(&args.file)?;
+    let file = args.file.display();
+    let text = format!(
+        "# A scene of {}: `topo run {file}` runs it. Lines behind # say what is there without them.\n{}",
+        battery.what(),
+        keys.new_scene(battery.first_scene()),
+    );
+    let mut options = OpenOptions::new();
+    options.write(true).truncate(true);
+    match args.force {
+        true => options.create(true),
+        false => options.create_new(true),
+    };
+    let written = options
+        .open(&args.file)
+        .and_then(|mut f| f.write_all(text.as_bytes()));
+    written.map_err(|source| match source.kind() {
+        std::io::ErrorKind::AlreadyExists => CliError::Argument {
+            key: "FILE",
+            value: file.to_string(),
+            remedy: "it is there already: name another, or add --force to write over it".to_owned(),
+        },
+        _ => CliError::File {
+            path: args.file.clone(),
+            source,
+        },
+    })?;
+    output::data("scene", file.to_string());
+    say!("written to {file}; `topo run {file}` runs it");
+    Ok(())
+}
