@@ -2,7 +2,7 @@
 
 use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand};
 use std::path::PathBuf;
-use topo_cli::{OF_FIGURES, SystemsArgs, quality};
+use topo_cli::{OF_FIGURES, SystemsArgs, TERMS, quality};
 use topo_lab::Preset;
 
 /// How this program is called.
@@ -10,7 +10,7 @@ pub const NAME: &str = "cargo xtask";
 
 /// Commands of the topo workspace.
 #[derive(Debug, Parser)]
-#[command(name = NAME, bin_name = NAME, version, about)]
+#[command(name = NAME, bin_name = NAME, version, about, after_help = TERMS)]
 pub struct Cli {
     /// What to do.
     #[command(subcommand)]

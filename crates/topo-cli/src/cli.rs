@@ -15,9 +15,21 @@ use quality::OF_STUDIES;
 pub use quality::{OF_FIGURES, quality};
 pub use scene::{NewArgs, SceneArgs, SceneCommand};
 
+/// Words and units that every table, figure and page uses.
+pub const TERMS: &str = "Terms:
+  T_0, E_0      units of fibres: 2 L eta/(h E_b) and E_b h^2 L (h radius, L length, E_b bending modulus, eta viscosity)
+  xi_N, tau_N   units of colloids: correlation length and xi_N^2/(Gamma L), L the elastic constant;
+                R^2/(Gamma L), for a particle of radius R, is (R/xi_N)^2 tau_N
+  cut           where a fibre is opened, s/L
+  t50, t99      when 50 or 99 % of the stored energy is released: of a fibre, of what it stored before the cut;
+                of a colloid, of what it stores after the switch above its final state
+  untied        when the knot is gone, t_untie in tables
+  Wr            writhe of the fibre, in turns
+  reading       how one L/h is read for knots of different length when tight";
+
 /// Topological batteries: knotted elastic fibres and nematic colloids, charged, discharged and drawn.
 #[derive(Debug, Parser)]
-#[command(name = "topo", bin_name = "topo", version, about)]
+#[command(name = "topo", bin_name = "topo", version, about, after_help = TERMS)]
 pub struct Cli {
     /// What to do.
     #[command(subcommand)]

@@ -22,7 +22,7 @@ mod progress;
 pub use batteries::{BATTERIES, Batteries};
 pub use cli::{
     Any, BucklingArgs, Cli, Command, CompareArgs, CostArgs, Measure, OF_FIGURES, SystemsArgs,
-    WorkArgs, quality,
+    TERMS, WorkArgs, quality,
 };
 pub use error::CliError;
 pub use interrupt::{check, install};
