@@ -46,7 +46,9 @@ impl Reporter {
                 _,
             ) => {
                 if n_reused > 0 {
-                    note!("{n_reused} of {} finished already", count(n_cases, "case"));
+                    let verb = if n_cases == 1 { "is" } else { "are" };
+                    let cases = count(n_cases, "case");
+                    note!("{n_reused} of {cases} {verb} finished already");
                 }
                 self.progress
                     .get_or_init(|| Progress::expecting(self.label, n_cases - n_reused, estimate));
