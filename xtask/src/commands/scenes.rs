@@ -50,11 +50,11 @@ fn head(keys: &Keys, table: &str) -> String {
         table => format!("`[{table}]`"),
     };
     let about = match table {
-        "" => "",
-        table => keys.about(table),
+        "" => String::new(),
+        table => format!("{}\n\n", keys.about(table)),
     };
     format!(
-        "\n### {title}\n\n{about}\n\n| key | unit | left out | one value | means | example |\n|---|---|---|---|---|---|\n"
+        "\n### {title}\n\n{about}<!-- settings -->\n\n| key | unit | left out | one value | means | example |\n|---|---|---|---|---|---|\n"
     )
 }
 
