@@ -24,28 +24,3 @@ pub fn draw(movie: Movie, stage: &Stage<'_>) -> Result<String, ViewError> {
     data::write(&path, &bytes)?;
     Ok(clip.finding)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use topo_core::Interrupt;
-    use topo_lab::Preset;
-
-    /// Makes the movies into the folder that `TOPO_LOOK` names.
-    #[test]
-    #[ignore = "for looking at, not for checking"]
-    fn look_at_movies() {
-        let Ok(folder) = std::env::var("TOPO_LOOK") else {
-            return;
-        };
-        let stage = Stage {
-            results: std::path::Path::new(&folder),
-            quality: Preset::Draft,
-            interrupt: &Interrupt::new(),
-            drawn: &|| {},
-        };
-        for movie in ALL {
-            draw(movie, &stage).unwrap();
-        }
-    }
-}

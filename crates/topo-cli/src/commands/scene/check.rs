@@ -6,6 +6,7 @@ use topo_lab::scene_faults;
 
 use crate::batteries::Batteries;
 use crate::commands::knot::print;
+use crate::duration::count;
 use crate::error::CliError;
 use crate::output;
 
@@ -30,11 +31,9 @@ pub fn run(files: &[PathBuf], batteries: &Batteries<'_>) -> Result<(), CliError>
     print(&String::from_utf8_lossy(&text));
     match faults.len() {
         0 => Ok(()),
-        n => {
-            let what = if n == 1 { "fault" } else { "faults" };
-            Err(CliError::Input(format!(
-                "{n} {what} found; `topo run` shows where the first one is"
-            )))
-        }
+        n => Err(CliError::Input(format!(
+            "{} found; `topo run` shows where the first one is",
+            count(n, "fault")
+        ))),
     }
 }

@@ -1,9 +1,7 @@
 //! `topo scene new`: a scene to begin with.
 
-use std::fs::OpenOptions;
-use std::io::Write as _;
-
 use topo_lab::folder_of;
+use topo_view::data;
 
 use crate::batteries::Batteries;
 use crate::cli::NewArgs;
@@ -31,26 +29,14 @@ pub fn run(args: &NewArgs, batteries: &Batteries<'_>) -> Result<(), CliError> {
         battery.what(),
         keys.new_scene(battery.first_scene()),
     );
-    let mut options = OpenOptions::new();
-    options.write(true).truncate(true);
-    match args.force {
-        true => options.create(true),
-        false => options.create_new(true),
-    };
-    let written = options
-        .open(&args.file)
-        .and_then(|mut f| f.write_all(text.as_bytes()));
-    written.map_err(|source| match source.kind() {
-        std::io::ErrorKind::AlreadyExists => CliError::Argument {
+    if args.file.exists() && !args.force {
+        return Err(CliError::Argument {
             key: "FILE",
             value: file.to_string(),
             remedy: "it is there already: name another, or add --force to write over it".to_owned(),
-        },
-        _ => CliError::File {
-            path: args.file.clone(),
-            source,
-        },
-    })?;
+        });
+    }
+    data::write(&args.file, text.as_bytes())?;
     output::data("scene", file.to_string());
     say!("written to {file}; `topo run {file}` runs it");
     Ok(())
