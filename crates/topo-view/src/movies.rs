@@ -4,7 +4,6 @@ mod apng;
 mod axes;
 mod elastic;
 mod nematic;
-mod palette;
 mod stage;
 
 use crate::data;

@@ -1,9 +1,9 @@
 //! Frames as one animated PNG with a palette, which every browser plays; each holds only what differs from the one before.
 
-use super::palette::{N_COLORS, Palette};
 use crate::error::ViewError;
 use png::{BlendOp, DisposeOp, EncodingError};
 use rayon::prelude::*;
+use topo_pixels::palette::{N_COLORS, Palette};
 
 /// Size of a movie in pixels.
 #[derive(Debug, Clone, Copy)]

@@ -1,9 +1,9 @@
 //! Solids made of capsules: spheres, rods and lines, in one picture that hides what lies behind.
 
-use super::camera;
-use super::color::{Rgb, to_linear};
-use super::raster::{Light, Window, cast, resolve, shade};
-use super::tube::key_light;
+use crate::camera;
+use crate::color::{Rgb, to_linear};
+use crate::raster::{Light, Window, cast, resolve, shade};
+use crate::tube::key_light;
 use nalgebra::{Matrix3, Vector3};
 use resvg::tiny_skia::Pixmap;
 

@@ -1,6 +1,6 @@
 //! A polygon as a smooth curve: points, tangents, curvatures and a frame that does not turn.
 
-use super::color::{Rgb, Scale};
+use crate::color::{Rgb, Scale};
 use nalgebra::Vector3;
 
 /// Catmull-Rom points about `spacing` apart through the vertices, with their colours.

@@ -10,8 +10,8 @@
 //!
 //! and the shadow of the key light is the smallest clearance of the ray towards it.
 
-use super::color::{Rgb, Scale};
-use super::smooth::{curvatures, frames, smooth, tangents};
+use crate::color::{Rgb, Scale};
+use crate::smooth::{curvatures, frames, smooth, tangents};
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
 

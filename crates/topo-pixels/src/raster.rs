@@ -1,7 +1,7 @@
 //! Pixels of capsules and of the tubes they make: orthographic, z-buffered, supersampled, shaded in linear light.
 
-use super::color::{Rgb, from_linear, to_linear};
-use super::tube::{Tube, key_light};
+use crate::color::{Rgb, from_linear, to_linear};
+use crate::tube::{Tube, key_light};
 use nalgebra::Vector3;
 use resvg::tiny_skia::{Pixmap, PremultipliedColorU8};
 
@@ -222,7 +222,7 @@ fn capsule(a: &Vector3<f64>, b: &Vector3<f64>, r: f64, x: f64, y: f64) -> Option
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plot::color::Scale;
+    use crate::color::Scale;
 
     fn bar(z: f64, along_x: bool) -> Vec<Vector3<f64>> {
         (0..30)
