@@ -28,8 +28,8 @@ mod vector;
 
 pub use braid::{braid_closure, closed_braid, n_components, parse_braid};
 pub use curve_file::{
-    CurveComponent, CurveFile, CurveFormat, CurveFrame, FrameChoice, curve_text, parse_components,
-    read_components, read_curve, write_curve,
+    CurveComponent, CurveFile, CurveFormat, CurveFrame, FrameChoice, curve_text, curves_text,
+    parse_components, read_components, read_curve, write_curve, write_curves,
 };
 pub use error::KnotError;
 pub use ideal::{

@@ -105,7 +105,7 @@ impl TightKnot {
 /// A tight link with the evidence for it.
 ///
 /// # Validation
-/// `val_tight_links_have_their_exact_lengths`, `links_are_tight`
+/// `val_tight_links_have_their_exact_lengths`, `val_torus_links_are_as_short_as_published`
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TightLink {
     /// Name of the link.
@@ -187,7 +187,7 @@ pub fn tighten_entry_until(
 /// As [`tighten_entry`].
 ///
 /// # Validation
-/// `val_tight_links_have_their_exact_lengths`, `links_are_tight`
+/// `val_tight_links_have_their_exact_lengths`, `val_torus_links_are_as_short_as_published`
 ///
 /// # References
 /// `cantarella2002`

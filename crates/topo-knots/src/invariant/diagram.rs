@@ -31,7 +31,7 @@ impl Diagram {
     /// Removes crossings by Reidemeister's first and second move until neither applies.
     ///
     /// Two crossings that follow each other on both of their strands bound a bigon in any planar diagram, but for what is apart
-    /// from the rest or hangs on a single crossing, which can be moved away. So the code alone shows where the second move applies.
+    /// from the rest or joined to it by a single crossing, which can be moved away. So the code alone shows where the second move applies.
     pub fn cancel(&mut self) {
         let mut alive = vec![true; self.signs.len()];
         let mut place = vec![[0usize; 2]; self.signs.len()];

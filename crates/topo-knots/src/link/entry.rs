@@ -20,7 +20,9 @@ const LONGEST_START: usize = 4000;
 /// `invariants_of_the_links`, `files_of_links_with_faults_are_named`
 ///
 /// # References
-/// `livingston2026`
+/// [linkinfo2026]
+///
+/// [linkinfo2026]: https://linkinfo.knotinfo.org
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct LinkEntry {

@@ -16,7 +16,7 @@ const N_MORE_LOOKS: u64 = 4;
 /// Pass moves tried at random on each diagram then.
 const N_SHUFFLES: usize = 300;
 /// Crossing number up to which all links are known.
-const COMPLETE_UP_TO: usize = 7;
+const COMPLETE_UP_TO: usize = LinkType::CERTAIN_TO as usize;
 /// Distance over size below which components count as touching: a few hundred roundings.
 const TOUCHING: f64 = 1e-13;
 
@@ -49,6 +49,9 @@ pub struct LinkType {
 }
 
 impl LinkType {
+    /// Crossing number up to which every prime link was compared and distinguished from every sum.
+    pub const CERTAIN_TO: u32 = 7;
+
     /// Whether it falls into parts that can be moved apart.
     pub fn is_split(&self) -> bool {
         self.parts.len() > 1

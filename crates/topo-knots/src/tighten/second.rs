@@ -103,8 +103,13 @@ pub fn second_opinion_of_link_until(
     Ok(opinion(&first, interrupt, cut_short)?.with(Curves::into_parts))
 }
 
-impl SecondOpinion<Curves> {
-    fn with<C>(self, change: impl FnOnce(Curves) -> C) -> SecondOpinion<C> {
+impl<A> SecondOpinion<A> {
+    /// The numbers alone.
+    pub fn without_curves(self) -> SecondOpinion<()> {
+        self.with(drop)
+    }
+
+    fn with<C>(self, change: impl FnOnce(A) -> C) -> SecondOpinion<C> {
         SecondOpinion {
             curve: change(self.curve),
             length_over_radius: self.length_over_radius,
