@@ -27,7 +27,7 @@ pub use nematic::{
     late_rate, nematic_resonance, resonance_peak,
 };
 pub use statistics::{Spread, median, quantile, standard_deviation};
-pub use table::{KnotRow, columns, parse_table, read_table, table_bytes, write_table};
+pub use table::{KnotRow, LinkRow, columns, parse_table, read_table, table_bytes, write_table};
 pub use timeline::{Timeline, TimelineSettings, TypedSample, UNKNOT};
 pub use times::{DischargeTimes, ELASTIC_SHARES, Interpolated, NEMATIC_SHARES};
 pub use warnings::{Warning, Warnings};

@@ -39,6 +39,39 @@ pub struct KnotRow {
     pub cpu_seconds: f64,
 }
 
+/// One link: lengths in units of the tube radius.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct LinkRow {
+    /// Name.
+    pub link: String,
+    /// Length of all components over the radius of the tube around them.
+    pub length_over_radius: f64,
+    /// Published one, exact where it is proved or calculated, if any.
+    pub reference: Option<f64>,
+    /// Key of its publication.
+    pub source: String,
+    /// Part of the tension that contacts cannot balance.
+    pub residual: f64,
+    /// Excess over the published one, in per cent.
+    pub excess_percent: Option<f64>,
+    /// Number of components.
+    pub components: usize,
+    /// Vertices of the tight polygons.
+    pub vertices: usize,
+    /// Linking numbers of the pairs of components: 1 and 2, 1 and 3, 2 and 3, and so on.
+    pub linking_numbers: String,
+    /// Sum of the writhes of the components: no unit.
+    pub writhe: f64,
+    /// Pairs of edges in contact.
+    pub struts: usize,
+    /// Vertices as sharp as the tube allows.
+    pub kinks: usize,
+    /// Whether the length came to rest at the finest level.
+    pub converged: bool,
+    /// Processor time that the tightening took, in seconds.
+    pub cpu_seconds: f64,
+}
+
 /// Writes rows as CSV with a header, atomically. A field `further` of type [`Further`](crate::Further) becomes columns of their own.
 ///
 /// # Errors

@@ -10,7 +10,7 @@ use crate::error::CliError;
 use crate::interrupt;
 use crate::progress::{Progress, waiting};
 pub use order::Order;
-use order::more_knots;
+use order::{links_used, more_knots};
 pub use report::Failures;
 pub use scene::scene;
 use scene::sweep;
@@ -18,8 +18,8 @@ use std::time::Instant;
 use topo_core::Interrupt;
 use topo_knots::TightenSettings;
 use topo_lab::{
-    ElasticScene, Event, LabError, NematicScene, Rods, SweepSettings, tight_shapes, with_jobs,
-    write_knots,
+    ElasticScene, Event, LabError, NematicScene, Rods, SweepSettings, tight_links, tight_shapes,
+    with_jobs, write_knots, write_links,
 };
 use topo_view::provenance::Provenance;
 
@@ -83,22 +83,25 @@ fn knots(
     let start = Instant::now();
     let names = scene.knots_used(table)?;
     let more = more_knots(order.quality, &names, table);
-    let progress = Progress::start("knots", names.len() + more.len());
+    let links = links_used(order.quality);
+    let progress = Progress::start("knots", names.len() + more.len() + links.len());
     let report = |event: Event<'_>| {
         if let Event::Knot { name, .. } = event {
             progress.done(name);
         }
     };
-    let shapes = with_jobs(order.jobs, || {
+    let (shapes, links) = with_jobs(order.jobs, || {
         let mut shapes = tight_shapes(&names, table, &scene.tighten, order.results, stop, &report)?;
         let standard = TightenSettings::standard();
         let more = tight_shapes(&more, table, &standard, order.results, stop, &report)?;
         shapes.extend(more);
-        Ok::<_, LabError>(shapes)
+        let links = tight_links(&links, &scene.tighten, order.results, stop, &report)?;
+        Ok::<_, LabError>((shapes, links))
     })??;
     progress.finish();
     interrupt::check(stop)?;
     write_knots(&shapes, table, order.results)?;
+    write_links(&links, order.results)?;
     note_time("knots", start, provenance);
     Ok(())
 }

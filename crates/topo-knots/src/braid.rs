@@ -93,6 +93,14 @@ fn permutation(word: &[i32]) -> Result<Vec<usize>, KnotError> {
 
 /// Refuses words whose closure is not a knot.
 pub(crate) fn check_word(word: &[i32]) -> Result<(), KnotError> {
+    match check_link_word(word)? {
+        1 => Ok(()),
+        n_components => Err(KnotError::Link { n_components }),
+    }
+}
+
+/// Refuses words whose closure falls apart; its number of components.
+pub(crate) fn check_link_word(word: &[i32]) -> Result<usize, KnotError> {
     let n_components = n_components(word)?;
     let largest = word.iter().map(|g| g.abs()).max().unwrap_or(0);
     for generator in 1..=largest {
@@ -100,11 +108,7 @@ pub(crate) fn check_word(word: &[i32]) -> Result<(), KnotError> {
             return Err(KnotError::UnusedGenerator { generator, largest });
         }
     }
-    if n_components != 1 {
-        Err(KnotError::Link { n_components })
-    } else {
-        Ok(())
-    }
+    Ok(n_components)
 }
 
 /// The closure of a braid word as a closed curve along which a tube of radius 1 does not touch itself.
@@ -121,12 +125,45 @@ pub(crate) fn check_word(word: &[i32]) -> Result<(), KnotError> {
 pub fn closed_braid(word: &[i32]) -> Result<Polyline, KnotError> {
     check_word(word)?;
     let columns = columns(word);
+    Ok(component(&columns, 0)?.0)
+}
+
+/// The closure of a braid word of any number of components, each closed and oriented along the braid, that of the innermost strand
+/// first: together they are such a tube too.
+///
+/// # Errors
+/// As [`closed_braid`], but for [`KnotError::Link`].
+///
+/// # Validation
+/// `closures_of_links_are_legal_tubes`
+pub fn braid_closure(word: &[i32]) -> Result<Vec<Polyline>, KnotError> {
+    let n_components = check_link_word(word)?;
+    let columns = columns(word);
+    let mut is_done = Vec::new();
+    let mut components = Vec::with_capacity(n_components);
+    for place in 0.. {
+        if components.len() == n_components {
+            break;
+        }
+        if !is_done.contains(&place) {
+            let (curve, places) = component(&columns, place)?;
+            is_done.extend(places);
+            components.push(curve);
+        }
+    }
+    Ok(components)
+}
+
+/// The component through a place of the braid, and all places that it runs through.
+fn component(columns: &[Vec<i32>], first: usize) -> Result<(Polyline, Vec<usize>), KnotError> {
     let n_columns = columns.len();
     let inner = (COLUMN_ARC * n_columns as f64 / TAU).max(STRAND_GAP);
     let width = TAU / n_columns as f64;
     let mut vertices = Vec::new();
-    let mut place = 0;
+    let mut place = first;
+    let mut places = Vec::new();
     loop {
+        places.push(place);
         for (c, column) in columns.iter().enumerate() {
             let (next, lift) = step(column, place);
             let radius = inner + STRAND_GAP * 0.5 * (place + next) as f64;
@@ -140,13 +177,13 @@ pub fn closed_braid(word: &[i32]) -> Result<Polyline, KnotError> {
             }
             place = next;
         }
-        if place == 0 {
+        if place == first {
             break;
         }
     }
     let rough = Polyline::new(vertices, true)?;
     let n_edges = (rough.length() * PER_UNIT).round() as usize;
-    Ok(rough.resampled(n_edges)?)
+    Ok((rough.resampled(n_edges)?, places))
 }
 
 /// Groups the letters greedily: those in one column touch no common strand.
@@ -229,6 +266,31 @@ mod tests {
             let error = parse_braid(text).expect_err(text).to_string();
             assert!(error.contains(letter), "{error}");
         }
+    }
+
+    #[test]
+    fn closures_of_links_are_legal_tubes() {
+        for (word, sizes) in [
+            (&[1, 1][..], 2),
+            (&[1, -2, 1, -2, 1, -2], 3),
+            (&[1, 1, 2, 2, 3, 3], 4),
+            (&[1, 1, 1, 2, 2], 2),
+            (&[1, 2, 3, 4].repeat(5), 5),
+        ] {
+            let parts = braid_closure(word).expect("a link");
+            assert_eq!(
+                (parts.len(), n_components(word).expect("a word")),
+                (sizes, sizes)
+            );
+            let tau = topo_core::thickness_of_all(&parts).tau;
+            assert!((1.0..1.3).contains(&tau), "{word:?}: {tau}");
+        }
+        let knot = braid_closure(&[1, -2, 1, -2]).expect("a knot");
+        assert_eq!(knot, [closed_braid(&[1, -2, 1, -2]).expect("a knot")]);
+        assert!(matches!(
+            braid_closure(&[1, 1, 3, 3]),
+            Err(KnotError::UnusedGenerator { generator: 2, .. })
+        ));
     }
 
     #[test]

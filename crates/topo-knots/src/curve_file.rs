@@ -24,7 +24,7 @@ use component::FrameOf;
 use fault::{fault, quoted};
 
 pub use component::CurveComponent;
-pub use write::{curve_text, write_curve};
+pub use write::{curve_text, curves_text, write_curve, write_curves};
 
 /// A file format for curves.
 ///

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
-use crate::TightKnot;
+use crate::{TightKnot, TightLink};
 
 /// Refusals of the knot table, the braid closure, the tightening and the identification.
 #[derive(Debug, Error)]
@@ -67,11 +67,58 @@ pub enum KnotError {
     },
     /// Several components instead of one.
     #[error(
-        "this is a link of {n_components} components; only knots (one component) are served: give one component at a time"
+        "this is a link of {n_components} components where a knot, one component, is needed: give one component at a time, or a link where links are served"
     )]
     Link {
         /// Number of components.
         n_components: usize,
+    },
+    /// No link of that name is in the table.
+    #[error(
+        "no link `{name}` in the table; {}names are such as L6a4, whitehead, chain(3) or T(3,3)", near_links(.near)
+    )]
+    UnknownLink {
+        /// The requested name.
+        name: String,
+        /// Names in the table that resemble it.
+        near: Vec<String>,
+    },
+    /// A single component where a link is needed.
+    #[error(
+        "this is a knot, a single component, where a link of several is needed: give it as a knot"
+    )]
+    NoLink,
+    /// A component of a link is refused.
+    #[error("component {component}: {reason}")]
+    Component {
+        /// Number of the component, from 1.
+        component: usize,
+        /// Why.
+        reason: Box<KnotError>,
+    },
+    /// A component is open.
+    #[error(
+        "component {component} is open: its ends are {gap:.3} times its longest edge apart; close it, or repeat its first vertex at the end"
+    )]
+    OpenComponent {
+        /// Number of the component, from 1.
+        component: usize,
+        /// Distance of the ends over the longest edge.
+        gap: f64,
+    },
+    /// Two components have a point in common, or all of them.
+    #[error(
+        "components {first} and {second} {}; move them apart, or remove one if it was given twice", touching(*.share, *.depth)
+    )]
+    ComponentsTouch {
+        /// Number of one component, from 1.
+        first: usize,
+        /// Number of the other.
+        second: usize,
+        /// Share of the vertices of the first that lie on the second.
+        share: f64,
+        /// Distance of the two over the size of both together.
+        depth: f64,
     },
     /// A knot file could not be understood.
     #[error("{}: {problem}", path.display())]
@@ -188,6 +235,16 @@ pub enum KnotError {
         /// The best curve so far, not converged.
         best: Box<TightKnot>,
     },
+    /// The tightening of a link was interrupted: nothing is kept of it but this.
+    #[error(
+        "{}: interrupted; the best curves so far have length {:.4} over their radius",
+        best.name,
+        best.length_over_radius
+    )]
+    InterruptedLink {
+        /// The best curves so far, not converged.
+        best: Box<TightLink>,
+    },
     /// A file of the cache could not be written.
     #[error(transparent)]
     File(#[from] topo_core::FileError),
@@ -202,6 +259,24 @@ fn io_remedy(source: &std::io::Error) -> &'static str {
         std::io::ErrorKind::PermissionDenied => "check its permissions",
         std::io::ErrorKind::InvalidData => "save it as UTF-8 text",
         _ => "check the path, its permissions and the disk",
+    }
+}
+
+fn touching(share: f64, depth: f64) -> String {
+    match share {
+        1.0 => "coincide at every vertex of the first".to_owned(),
+        s if s > 0.0 => format!(
+            "coincide at {:.3} % of the vertices of the first",
+            100.0 * s
+        ),
+        _ => format!("meet: they come within {depth:.1e} of their size"),
+    }
+}
+
+fn near_links(near: &[String]) -> String {
+    match near.is_empty() {
+        true => String::new(),
+        false => format!("did you mean {}? ", near.join(", ")),
     }
 }
 

@@ -18,10 +18,11 @@ pub(crate) use diagram::Diagram;
 #[cfg(test)]
 pub(crate) use diagram::Visit;
 pub use jones::Jones;
+pub(crate) use jones::text as polynomial_text;
 pub(crate) use kauffman::{kauffman, kauffman_of_name, numbers};
 #[cfg(test)]
 pub(crate) use projection::one_view;
-pub(crate) use projection::{fibonacci_directions, least_crossing};
+pub(crate) use projection::{fibonacci_directions, least_crossing, least_crossing_of};
 
 /// Directions tried for the projection with the fewest crossings.
 const N_PROJECTIONS: usize = 30;
@@ -99,6 +100,12 @@ impl Invariants {
     /// Jones polynomial of a diagram; `None` if that would take too long.
     pub(crate) fn jones_of(diagram: &Diagram) -> Option<Jones> {
         jones::jones(diagram)
+    }
+
+    /// Kauffman's bracket of a diagram times (-A^3)^-w, w being the writhe of the components alone, in powers of t: four times the
+    /// lowest, and the coefficients; `None` if that would take too long.
+    pub(crate) fn bracket_of(diagram: &Diagram) -> Option<(i32, Vec<i64>)> {
+        jones::bracket(diagram)?.in_powers_of_t(diagram.own_writhe())
     }
 
     /// Invariants of the unknot.

@@ -2,9 +2,9 @@
 
 use rand::RngExt;
 use rand_pcg::Pcg64;
-use topo_core::Polyline;
 
-use crate::{KnotError, V, thickness};
+use crate::curves::Curves;
+use crate::{KnotError, V};
 
 /// Vertices of an inverted curve.
 const N_VERTICES: usize = 600;
@@ -15,7 +15,7 @@ const MOST_COMPARED: usize = 12;
 /// A longer curve has strands too thin for its vertices, and would take long to tighten.
 const LONGEST: f64 = 500.0;
 
-/// Inverts a closed curve in a sphere around a random point between its strands; `None` if no point gives a curve that is thick
+/// Inverts closed curves in a sphere around a random point between its strands; `None` if no point gives a curve that is thick
 /// enough.
 ///
 /// ```math
@@ -27,17 +27,17 @@ const LONGEST: f64 = 500.0;
 /// outside, so that each face may lead to another basin.
 ///
 /// # Errors
-/// [`KnotError::Curve`] if a curve cannot be resampled.
+/// [`KnotError::Curve`] if the curves cannot be resampled.
 ///
 /// # Validation
 /// `inversions_keep_the_type_and_change_the_shape`
 ///
 /// # References
 /// `freedman1994`
-pub(crate) fn inverted(curve: &Polyline, rng: &mut Pcg64) -> Result<Option<Polyline>, KnotError> {
-    let fine = curve.resampled(N_VERTICES)?;
+pub(crate) fn inverted(curves: &Curves, rng: &mut Pcg64) -> Result<Option<Curves>, KnotError> {
+    let fine = curves.resampled(N_VERTICES)?;
     let x = fine.vertices();
-    let tau = thickness(curve).tau;
+    let tau = curves.thickness().tau;
     for _ in 0..MOST_TRIALS {
         let mut best = (0.0, V::zeros());
         for _ in 0..rng.random_range(1..MOST_COMPARED) {
@@ -63,10 +63,11 @@ pub(crate) fn inverted(curve: &Polyline, rng: &mut Pcg64) -> Result<Option<Polyl
             V::new(y.x, y.y, -y.z)
         });
         // Edges that are far from equal: the centre was too near the curve.
-        let Ok(image) = Polyline::new(image.collect(), true)?.resampled(N_VERTICES) else {
+        let image = fine.with_vertices(image);
+        let Some(Ok(image)) = image.map(|image| image.resampled(N_VERTICES)) else {
             continue;
         };
-        if image.length() < LONGEST * thickness(&image).tau {
+        if image.length() < LONGEST * image.thickness().tau {
             return Ok(Some(image));
         }
     }
@@ -86,9 +87,10 @@ mod tests {
         for name in ["3_1", "5_2"] {
             let knot = table.get(name).expect("known");
             let start = knot.start_curve().expect("a curve");
-            let round = relax_moebius(&start, 200, 100).expect("relaxed");
+            let round = Curves::from(relax_moebius(&start, 200, 100).expect("relaxed"));
             // Length over the largest distance: the shape, whatever its size and place.
-            let spread = |curve: &Polyline| {
+            let spread = |curve: &Curves| {
+                let curve = &curve.parts()[0];
                 let middle = curve.centroid();
                 let far = |x: &V| (x - middle).norm();
                 curve.length() / curve.vertices().iter().map(far).fold(0.0, f64::max)
@@ -97,7 +99,7 @@ mod tests {
             for _ in 0..4 {
                 let curve = inverted(&round, &mut rng).expect("a curve").expect("fair");
                 // The handedness too: the signature changes sign under reflection.
-                knot.verify(&curve).expect("the same knot");
+                knot.verify(&curve.parts()[0]).expect("the same knot");
                 spreads.push(spread(&curve));
             }
             spreads.sort_by(f64::total_cmp);

@@ -46,6 +46,8 @@ pub(crate) struct Reducer {
     pub x: Vec<V>,
     boxes: EdgeBoxes,
     next: Vec<u32>,
+    /// Edges of other curves, which no triangle may meet; a closed chain then keeps at least a triangle.
+    pub others: Vec<[V; 2]>,
     /// Triangles tested, for the tests of cost.
     pub n_triangles: usize,
 }
@@ -71,9 +73,13 @@ impl Reducer {
     pub fn reduce(&mut self, closed: bool, rays: &[Ray]) {
         // Single precision rounds by 6e-8; a curve may be much longer along one axis than along another.
         let sizes = |s: V, x: &V| s.sup(&x.abs());
-        let size = self.x.iter().fold(V::zeros(), sizes);
+        let ends = self.others.iter().flatten();
+        let size = self.x.iter().chain(ends).fold(V::zeros(), sizes);
         let pad = [0, 1, 2].map(|k| (1e-6 * size[k]) as f32);
-        let least = if closed { LEAST_CLOSED } else { 3 };
+        let least = match closed && self.others.is_empty() {
+            true => LEAST_CLOSED,
+            false => 3,
+        };
         let mut n_idle = 0;
         while self.x.len() >= least && n_idle < 2 {
             n_idle = if self.pass(closed, rays, pad) {
@@ -94,7 +100,14 @@ impl Reducer {
     fn pass(&mut self, closed: bool, rays: &[Ray], pad: [f32; 3]) -> bool {
         let n = self.x.len();
         let n_edges = if closed { n } else { n - 1 };
-        self.boxes.reset(n_edges);
+        let fewest = match self.others.is_empty() {
+            true => LEAST_CLOSED - 1,
+            false => 3,
+        };
+        self.boxes.reset(n_edges + self.others.len());
+        for (k, [p, q]) in self.others.iter().enumerate() {
+            self.boxes.set(n_edges + k, &Aabb::around(&[p, q], pad));
+        }
         self.next.clear();
         self.next
             .extend((1..=n as u32).map(|i| if i == n as u32 { 0 } else { i }));
@@ -107,7 +120,7 @@ impl Reducer {
         let mut a = 0;
         loop {
             let b = self.next[a] as usize;
-            if b == 0 || (!closed && b == n - 1) || (closed && n - removed < LEAST_CLOSED) {
+            if b == 0 || (!closed && b == n - 1) || (closed && n - removed <= fewest) {
                 break;
             }
             let c = self.next[b] as usize;
@@ -174,6 +187,10 @@ impl Reducer {
         }
         let bounds = Aabb::around(&corners, pad);
         let hit = self.boxes.any(&bounds, |edge| {
+            if edge >= n_edges {
+                let [p, q] = &self.others[edge - n_edges];
+                return is_pierced(corners, p, q);
+            }
             edge != a
                 && edge != b
                 && edge != c

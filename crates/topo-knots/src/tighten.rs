@@ -1,25 +1,31 @@
-//! Tight knots: several starts, a search for the basin at low resolution, then ever finer polygons.
+//! Tight knots and links: several starts, a search for the basin at low resolution, then ever finer polygons.
 
 mod augmented;
 mod certificate;
-mod check;
 mod constraints;
 mod hops;
 mod kick;
 mod lbfgs;
 mod level;
+mod origin;
+mod pairs;
 mod qp;
 mod search;
 mod second;
 mod settings;
+mod shape;
 mod start;
 mod stop;
 mod struts;
+mod topology;
 
 pub use certificate::Certificate;
-pub use second::{SecondOpinion, second_opinion, second_opinion_until};
+pub use second::{
+    SecondOpinion, second_opinion, second_opinion_of_link, second_opinion_of_link_until,
+    second_opinion_until,
+};
 pub use settings::TightenSettings;
-pub use struts::struts;
+pub use struts::{struts, struts_of_all};
 
 use std::f64::consts::TAU;
 
@@ -28,11 +34,14 @@ use rand_pcg::Pcg64;
 use serde::{Deserialize, Serialize};
 use topo_core::Polyline;
 
+use crate::curves::Curves;
 use crate::inversion::inverted;
-use crate::moebius::relax_moebius;
-use crate::{Invariants, KnotEntry, KnotError, closed_braid, mirror_name, thickness};
-use check::check_type;
-use level::{LOOSE_REACH, Level, NEAR_REACH, Outcome, tighten_level};
+use crate::moebius::relax_moebius_of;
+use crate::{
+    KnotEntry, KnotError, LinkEntry, LinkInvariants, braid_closure, mirror_name, thickness,
+};
+pub(crate) use origin::{Origin, Tight};
+use shape::{Shape, refine_all, tighten_all};
 use start::{MOEBIUS_EDGES, MOEBIUS_STEPS, padded, stabilised};
 use stop::Stop;
 pub(crate) use stop::mirrored;
@@ -42,13 +51,8 @@ use topo_core::{CpuClock, Interrupt};
 const N_PADDED: usize = 2;
 /// Vertices per unit of ropelength of the curve that is inverted.
 const LEAST_PER_UNIT: f64 = 4.0;
-/// Vertices per unit of ropelength above which a level starts from a curve that is nearly tight.
-const WELL_RESOLVED: f64 = 8.0;
 /// Vertices of the tight unknot: it is 2e-5 longer than the circle.
 const CIRCLE_VERTICES: usize = 400;
-/// Levels before the last need not come to rest better than this.
-const COARSE_TOLERANCE: f64 = 1e-4;
-
 /// A tight knot with the evidence for it.
 ///
 /// # Validation
@@ -98,6 +102,52 @@ impl TightKnot {
     }
 }
 
+/// A tight link with the evidence for it.
+///
+/// # Validation
+/// `val_tight_links_have_their_exact_lengths`, `val_torus_links_are_as_short_as_published`
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct TightLink {
+    /// Name of the link.
+    pub name: String,
+    /// The components, scaled to thickness 1 together.
+    pub curves: Vec<Polyline>,
+    /// The sum of their lengths, in units of the tube radius.
+    pub length_over_radius: f64,
+    /// What was checked on the curves themselves.
+    pub certificate: Certificate<LinkInvariants>,
+    /// Processor time that it took, in seconds.
+    pub cpu_seconds: f64,
+    /// Matrix factorisations that it took.
+    pub n_factorisations: usize,
+}
+
+impl TightLink {
+    /// Centrelines of rods, as [`TightKnot::centreline`].
+    ///
+    /// # Errors
+    /// As [`TightKnot::centreline`].
+    pub fn centrelines(&self) -> Result<Vec<Polyline>, KnotError> {
+        let curves = self.curves.iter();
+        Ok(curves.map(|c| c.smoothed(2)).collect::<Result<_, _>>()?)
+    }
+
+    /// The tight shape of the mirror image, to the bit, as [`TightKnot::mirror`].
+    pub fn mirror(&self) -> Self {
+        let certificate = Certificate {
+            writhe: 0.0 - self.certificate.writhe,
+            invariants: self.certificate.invariants.mirror(),
+            ..self.certificate.clone()
+        };
+        Self {
+            name: mirror_name(&self.name),
+            curves: self.curves.iter().map(Polyline::mirrored).collect(),
+            certificate,
+            ..self.clone()
+        }
+    }
+}
+
 /// Tightens a knot of the table from several starts: its curve or closed braid, plain and rounded, the closures of its other
 /// words and of random words of the same braid, and inversions of the best of these if the settings include them.
 ///
@@ -128,21 +178,71 @@ pub fn tighten_entry_until(
     settings: &TightenSettings,
     interrupt: &Interrupt,
 ) -> Result<TightKnot, KnotError> {
+    tighten_origin(entry, settings, interrupt)
+}
+
+/// Tightens a link as [`tighten_entry`] does a knot: the sum of the lengths of its components at the thickness of all together.
+///
+/// # Errors
+/// As [`tighten_entry`].
+///
+/// # Validation
+/// `val_tight_links_have_their_exact_lengths`, `val_torus_links_are_as_short_as_published`
+///
+/// # References
+/// `cantarella2002`
+pub fn tighten_link(entry: &LinkEntry, settings: &TightenSettings) -> Result<TightLink, KnotError> {
+    tighten_link_until(entry, settings, &Interrupt::new())
+}
+
+/// As [`tighten_link`], but ended early when `interrupt` requests it.
+///
+/// # Errors
+/// As [`tighten_link`], and [`KnotError::InterruptedLink`] with the best curves so far.
+pub fn tighten_link_until(
+    entry: &LinkEntry,
+    settings: &TightenSettings,
+    interrupt: &Interrupt,
+) -> Result<TightLink, KnotError> {
+    tighten_origin(entry, settings, interrupt)
+}
+
+/// Tightens a knot or a link.
+pub(crate) fn tighten_origin<O: Origin>(
+    entry: &O,
+    settings: &TightenSettings,
+    interrupt: &Interrupt,
+) -> Result<O::Tight, KnotError> {
     if entry.is_mirror_image() {
-        let itself = tighten_entry_until(&entry.mirror(), settings, interrupt);
+        let itself = tighten_origin(&entry.mirror(), settings, interrupt);
         return mirrored(itself);
     }
     let (clock, stop) = (CpuClock::start(), Stop::at(interrupt));
     settings.check()?;
-    let plain = entry.start_curve()?;
-    if entry.is_unknot() {
+    let plain = entry.start()?;
+    if let Some(shape) = entry.known()? {
         entry.verify(&plain)?;
-        return circle(entry, clock);
+        return Tight::of(entry.name(), shape);
     }
+    let mut starts = starts(entry, plain, settings)?;
+    if settings.n_inversions > 0 {
+        starts.extend(inversions(entry, &starts, settings, &stop)?);
+    }
+    let mut shape = tighten_all(entry.name(), &starts, settings, &stop)?;
+    shape.cpu_seconds = clock.seconds();
+    stop.unless_cut_short(Tight::of(entry.name(), shape)?)
+}
+
+/// Curves to start from, all of them of the type of the entry: its own, rounded, and the closures of other words.
+fn starts<O: Origin>(
+    entry: &O,
+    plain: Curves,
+    settings: &TightenSettings,
+) -> Result<Vec<Curves>, KnotError> {
     let mut starts = vec![plain];
     for n_edges in MOEBIUS_EDGES {
         // A curve that is too long for so few edges is no loss: the other starts remain.
-        let Ok(round) = relax_moebius(&starts[0], n_edges, MOEBIUS_STEPS) else {
+        let Ok(round) = relax_moebius_of(&starts[0], n_edges, MOEBIUS_STEPS) else {
             continue;
         };
         // A long start needs more edges, or its strands pass through each other.
@@ -151,31 +251,26 @@ pub fn tighten_entry_until(
             break;
         }
     }
-    for word in &entry.other_braids {
-        starts.push(closed_braid(word)?);
+    for word in entry.other_braids() {
+        starts.push(braid_closure(word)?.into());
     }
     let mut rng = Pcg64::seed_from_u64(settings.seed);
     // Words and curves of the table were chosen for the basins that they lead to: one random word less is needed.
-    let n_chosen = usize::from(!entry.other_braids.is_empty() || entry.start.is_some());
+    let n_chosen = usize::from(!entry.other_braids().is_empty() || entry.has_start());
     for k in 0..settings.n_variants.saturating_sub(n_chosen) {
-        if !entry.braid.is_empty() {
+        if !entry.braid().is_empty() {
             let word = if k < N_PADDED {
-                padded(&entry.braid, &mut rng)
+                padded(entry.braid(), &mut rng)
             } else {
-                stabilised(&entry.braid, &mut rng)
+                stabilised(entry.braid(), &mut rng)
             };
-            starts.push(closed_braid(&word)?);
+            starts.push(braid_closure(&word)?.into());
         }
     }
     for start in &starts {
         entry.verify(start)?;
     }
-    if settings.n_inversions > 0 {
-        starts.extend(inversions(entry, &starts, settings, &stop)?);
-    }
-    let mut tight = tighten_all(&entry.name, &starts, settings, &stop)?;
-    tight.cpu_seconds = clock.seconds();
-    stop.unless_cut_short(tight)
+    Ok(starts)
 }
 
 /// Curves of the walk that go on to the first level: the resolution of the walk does not decide between them.
@@ -209,64 +304,82 @@ pub fn tighten_by_hops_until(
     settings: &TightenSettings,
     interrupt: &Interrupt,
 ) -> Result<TightKnot, KnotError> {
+    hop_from(entry, n_hops, settings, interrupt)
+}
+
+/// As [`tighten_by_hops_until`], of a link.
+///
+/// # Errors
+/// As [`tighten_by_hops`], and [`KnotError::InterruptedLink`] with the best curves so far.
+pub fn tighten_link_by_hops_until(
+    entry: &LinkEntry,
+    n_hops: usize,
+    settings: &TightenSettings,
+    interrupt: &Interrupt,
+) -> Result<TightLink, KnotError> {
+    hop_from(entry, n_hops, settings, interrupt)
+}
+
+fn hop_from<O: Origin>(
+    entry: &O,
+    n_hops: usize,
+    settings: &TightenSettings,
+    interrupt: &Interrupt,
+) -> Result<O::Tight, KnotError> {
     if entry.is_mirror_image() {
-        let itself = tighten_by_hops_until(&entry.mirror(), n_hops, settings, interrupt);
+        let itself = hop_from(&entry.mirror(), n_hops, settings, interrupt);
         return mirrored(itself);
     }
     let (clock, stop) = (CpuClock::start(), Stop::at(interrupt));
     settings.check()?;
-    let kind = entry.verify(&closed_braid(&entry.braid)?)?;
+    let kind = entry.verify(&braid_closure(entry.braid())?.into())?;
     let (met, n_factorisations) = hops::hop(entry, &kind, n_hops, settings, &stop)?;
-    let curves = met.into_iter().take(N_MET).map(|o| o.curve).collect();
-    let mut tight = refine_all(&entry.name, curves, &kind, settings, &stop)?;
-    tight.n_factorisations += n_factorisations;
-    tight.cpu_seconds = clock.seconds();
-    stop.unless_cut_short(tight)
+    let curves = met.into_iter().take(N_MET).map(|o| o.curves).collect();
+    let mut shape = refine_all(entry.name(), curves, &kind, settings, &stop)?;
+    shape.n_factorisations += n_factorisations;
+    shape.cpu_seconds = clock.seconds();
+    stop.unless_cut_short(Tight::of(entry.name(), shape)?)
 }
 
 /// The tight unknot: the regular polygon on a circle.
-fn circle(entry: &KnotEntry, clock: CpuClock) -> Result<TightKnot, KnotError> {
+fn circle(clock: CpuClock) -> Result<Shape, KnotError> {
     let at = |k: usize| {
         let (sin, cos) = (TAU * k as f64 / CIRCLE_VERTICES as f64).sin_cos();
         crate::V::new(cos, sin, 0.0)
     };
     let curve = Polyline::new((0..CIRCLE_VERTICES).map(at).collect(), true)?;
-    let curve = curve.scaled(1.0 / thickness(&curve).tau)?;
-    let certificate = Certificate::of(&curve, true)?;
-    Ok(TightKnot {
-        name: entry.name.clone(),
-        length_over_radius: curve.length() / certificate.tau(),
-        curve,
-        certificate,
-        cpu_seconds: clock.seconds(),
+    Ok(Shape {
+        curves: curve.scaled(1.0 / thickness(&curve).tau)?.into(),
+        converged: true,
         n_factorisations: 0,
+        cpu_seconds: clock.seconds(),
     })
 }
 
 /// Inversions of the best that the starts lead to, rounded.
-fn inversions(
-    entry: &KnotEntry,
-    starts: &[Polyline],
+fn inversions<O: Origin>(
+    entry: &O,
+    starts: &[Curves],
     settings: &TightenSettings,
     stop: &Stop,
-) -> Result<Vec<Polyline>, KnotError> {
+) -> Result<Vec<Curves>, KnotError> {
     let coarse = TightenSettings {
         per_unit: LEAST_PER_UNIT,
         n_kicks: 0,
         ..*settings
     };
-    let tight = tighten_all(&entry.name, starts, &coarse, stop)?;
-    let round = relax_moebius(&tight.curve, MOEBIUS_EDGES[0], MOEBIUS_STEPS)?;
+    let tight = tighten_all(entry.name(), starts, &coarse, stop)?;
+    let round = relax_moebius_of(&tight.curves, MOEBIUS_EDGES[0], MOEBIUS_STEPS)?;
     let mut rng = Pcg64::seed_from_u64(settings.seed);
     let mut found = Vec::new();
     for _ in 0..settings.n_inversions {
         if stop.asks() {
             break;
         }
-        if let Some(curve) = inverted(&round, &mut rng)?
-            && entry.verify(&curve).is_ok()
+        if let Some(curves) = inverted(&round, &mut rng)?
+            && entry.verify(&curves).is_ok()
         {
-            found.push(curve);
+            found.push(curves);
         }
     }
     Ok(found)
@@ -291,121 +404,9 @@ pub fn tighten(
     starts: &[Polyline],
     settings: &TightenSettings,
 ) -> Result<TightKnot, KnotError> {
-    tighten_all(name, starts, settings, &Stop::default())
-}
-
-/// As [`tighten`]; cut short, it gives the best curve so far.
-fn tighten_all(
-    name: &str,
-    starts: &[Polyline],
-    settings: &TightenSettings,
-    stop: &Stop,
-) -> Result<TightKnot, KnotError> {
-    let clock = CpuClock::start();
-    settings.check()?;
-    let Some(first) = starts.first() else {
-        return Err(KnotError::NotTightened {
-            knot: name.to_owned(),
-            n_starts: 0,
-            last: "no start given".to_owned(),
-        });
-    };
-    let kind = Invariants::of(first.vertices())?;
-    let (found, n_factorisations) = search::search(name, starts, &kind, settings, stop)?;
-    let finalists = found.into_iter().take(settings.n_finalists());
-    let curves = finalists.map(|outcome| outcome.curve).collect();
-    let mut tight = refine_all(name, curves, &kind, settings, stop)?;
-    tight.n_factorisations += n_factorisations;
-    tight.cpu_seconds = clock.seconds();
-    Ok(tight)
-}
-
-/// Takes curves of type `kind` through all levels; the shortest at the first one goes on.
-fn refine_all(
-    name: &str,
-    mut curves: Vec<Polyline>,
-    kind: &Invariants,
-    settings: &TightenSettings,
-    stop: &Stop,
-) -> Result<TightKnot, KnotError> {
-    let (mut n_factorisations, mut converged) = (0, false);
-    for per_unit in settings.levels() {
-        if stop.asks() {
-            converged = false;
-            break;
-        }
-        let mut finer: Vec<Outcome> = Vec::new();
-        for curve in &curves {
-            let outcome = refine(curve, per_unit, settings, stop)?
-                .filter(|outcome| check_type(name, &outcome.curve, kind, "tightening").is_ok());
-            n_factorisations += outcome.as_ref().map_or(0, |o| o.n_factorisations);
-            finer.extend(outcome);
-        }
-        let best = finer
-            .into_iter()
-            .min_by(|a, b| a.ropelength.total_cmp(&b.ropelength));
-        let Some(best) = best else {
-            // The level before is still a tight curve of the right type.
-            tracing::warn!(name, per_unit, "a level failed, the one before it is kept");
-            converged = false;
-            break;
-        };
-        // a level that was cut short need not have come below what it started from
-        if stop.asks() && curves[0].ropelength() < best.ropelength {
-            converged = false;
-            break;
-        }
-        converged = best.converged;
-        curves = vec![best.curve];
-    }
-    let curve = curves.swap_remove(0);
-    let curve = curve.scaled(1.0 / thickness(&curve).tau)?;
-    let certificate = Certificate::of(&curve, converged)?;
-    Ok(TightKnot {
-        name: name.to_owned(),
-        length_over_radius: curve.length() / certificate.tau(),
-        curve,
-        certificate,
-        cpu_seconds: 0.0,
-        n_factorisations,
-    })
-}
-
-/// Tightens a curve at a resolution; `None` if a quadratic program fails.
-fn refine(
-    curve: &Polyline,
-    per_unit: f64,
-    settings: &TightenSettings,
-    stop: &Stop,
-) -> Result<Option<Outcome>, KnotError> {
-    let n = ((per_unit * curve.length() / thickness(curve).tau).round() as usize).max(16);
-    let is_last = per_unit == settings.per_unit;
-    let is_near = per_unit > WELL_RESOLVED;
-    let level = Level {
-        weights: [1.0; 3],
-        damping: 0.05,
-        curvature_damping: 0.1,
-        tolerance: if is_last {
-            settings.tolerance
-        } else {
-            settings.tolerance.max(COARSE_TOLERANCE)
-        },
-        rest: 0.1,
-        enough: 0.0,
-        reach: if is_near { NEAR_REACH } else { LOOSE_REACH },
-        max_steps: settings.max_steps,
-    };
-    let start = if is_near {
-        refined(curve, n)?
-    } else {
-        curve.resampled(n)?
-    };
-    Ok(tighten_level(&start, &level, stop))
-}
-
-/// A tight curve at more vertices, smoothed: the spline sharpens some so much that the whole curve would have to grow.
-fn refined(curve: &Polyline, n: usize) -> Result<Polyline, KnotError> {
-    Ok(curve.resampled(n)?.smoothed(2)?)
+    let starts: Vec<Curves> = starts.iter().cloned().map(Curves::from).collect();
+    let shape = tighten_all(name, &starts, settings, &Stop::default())?;
+    Tight::of(name, shape)
 }
 
 #[cfg(test)]

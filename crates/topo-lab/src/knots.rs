@@ -73,18 +73,11 @@ impl Estimate {
         jobs: usize,
     ) -> Result<Self, LabError> {
         let cache = knots_folder(out).join("cache");
-        // searches of the fine preset are longer; levels finer than four a unit cost by their vertices
-        let searches = 1.0 + settings.n_kicks as f64 / 4.0;
-        let levels = (settings.per_unit / 4.0).powf(LEVEL_POWER);
         let mut costs = Vec::new();
         for name in names {
             let entry = table.get(name)?;
             if !is_kept(&entry, settings, &cache) {
-                let size = (f64::from(entry.crossing_number) / 6.0).powf(CROSSINGS_POWER);
-                costs.push(Cost {
-                    seconds: size * (SEARCH_SECONDS * searches + LEVEL_SECONDS * levels),
-                    bytes: SHAPE_BYTES,
-                });
+                costs.push(cost(entry.crossing_number, settings));
             }
         }
         Ok(estimate(
@@ -93,6 +86,18 @@ impl Estimate {
             threads(jobs),
             true,
         ))
+    }
+}
+
+/// What the tight shape of a knot or link of so many crossings costs.
+pub(crate) fn cost(crossing_number: u32, settings: &TightenSettings) -> Cost {
+    // searches of the fine preset are longer; levels finer than four a unit cost by their vertices
+    let searches = 1.0 + settings.n_kicks as f64 / 4.0;
+    let levels = (settings.per_unit / 4.0).powf(LEVEL_POWER);
+    let size = (f64::from(crossing_number) / 6.0).powf(CROSSINGS_POWER);
+    Cost {
+        seconds: size * (SEARCH_SECONDS * searches + LEVEL_SECONDS * levels),
+        bytes: SHAPE_BYTES,
     }
 }
 

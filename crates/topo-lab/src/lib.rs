@@ -15,6 +15,7 @@ mod error;
 mod folder;
 mod goal;
 mod knots;
+mod links;
 mod nematic;
 mod preset;
 mod progress;
@@ -41,6 +42,7 @@ pub use goal::{
     check_estimates, errors_of_colloids, errors_of_rods, factor_of_estimates, points, table_hash,
 };
 pub use knots::{Shapes, knots_folder, tight_shapes, write_knots};
+pub use links::{tight_links, write_links};
 pub use nematic::{
     BucklingCase, BucklingRow, Colloid, FieldSnapshot, NEMATIC_RESULTS_VERSION, NematicCase,
     NematicFrame, NematicReport, NematicScene, buckling_cases, buckling_study,

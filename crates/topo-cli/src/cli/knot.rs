@@ -21,16 +21,21 @@ pub struct KnotArgs {
 /// What to do with knots.
 #[derive(Debug, Subcommand)]
 pub enum KnotCommand {
-    /// Find the tight shape of a knot and certify it.
+    /// Find the tight shape of a knot or a link and certify it.
     #[command(after_help = "Examples:
   topo knot tighten 6_3 --quality paper
   topo knot tighten all --quality paper       the whole table
   topo knot tighten --braid \"1 -2 1 -2\"
-  topo knot tighten --curve my-knot.vect --format xyz")]
+  topo knot tighten --curve my-knot.vect --format xyz
+  topo knot tighten --link whitehead --check
+  topo knot tighten --link \"chain(3)\" --link \"T(4,4)\" --quality paper
+  topo knot tighten --link all                all links of the table
+  topo knot tighten --braid \"1 1 2 2\"       a word or a file may be a link")]
     Tighten(TightenArgs),
-    /// Name the knot that a curve in a file is tied as.
+    /// Name the knot that a curve in a file is tied as, or the link of several.
     #[command(after_help = "Examples:
   topo knot identify curve.vect
+  topo knot identify rings.vect               several closed components: a link
   topo knot identify chain.xyz --open --closures 200
   topo knot identify results/elastic/CASE/snapshots.csv --frame 3
   topo knot identify trajectory.xyz --frame last --json
@@ -44,11 +49,12 @@ open unless the file says otherwise.
 
 Exit code: 0 named for certain, 3 one of several or consistent with a name, 2 refused.")]
     Identify(IdentifyArgs),
-    /// List the knots of the table.
+    /// List the knots and the links of the table.
     List,
-    /// Show all that the table knows of a knot.
-    #[command(after_help = "Example:
-  topo knot show 8_19")]
+    /// Show all that the table knows of a knot or a link.
+    #[command(after_help = "Examples:
+  topo knot show 8_19
+  topo knot show borromean")]
     Show {
         /// Name or alias, `m` before it for the mirror image.
         name: String,
@@ -60,9 +66,12 @@ Exit code: 0 named for certain, 3 one of several or consistent with a name, 2 re
 #[group(skip)]
 pub struct TightenArgs {
     /// Knots of the table, or `all`.
-    #[arg(value_name = "NAME", required_unless_present_any = ["braid", "curve"], conflicts_with_all = ["braid", "curve"])]
+    #[arg(value_name = "NAME", required_unless_present_any = ["braid", "curve", "links"], conflicts_with_all = ["braid", "curve", "links"])]
     pub names: Vec<String>,
-    /// A braid word whose closure to tighten, generators from 1, negative ones inverse.
+    /// Links of the table, such as L6a4, whitehead, chain(3) or T(3,3), or `all`; may be given several times.
+    #[arg(long = "link", value_name = "NAME", conflicts_with_all = ["braid", "curve"])]
+    pub links: Vec<String>,
+    /// A braid word whose closure to tighten, a knot or a link: generators from 1, negative ones inverse.
     #[arg(
         long,
         value_name = "WORD",
@@ -70,7 +79,7 @@ pub struct TightenArgs {
         conflicts_with = "curve"
     )]
     pub braid: Option<String>,
-    /// A closed curve to start from: .csv, .xyz or .vect.
+    /// A closed curve to start from, or several: .csv, .xyz or .vect.
     #[arg(long, value_name = "FILE")]
     pub curve: Option<PathBuf>,
     /// How fine.
@@ -168,6 +177,10 @@ mod tests {
         assert!(parse(&["tighten"]).is_err());
         assert!(parse(&["tighten", "3_1", "--braid", "1 1 1"]).is_err());
         assert!(parse(&["tighten", "--curve", "a.csv", "--braid", "1 1 1"]).is_err());
+        assert!(parse(&["tighten", "--link", "hopf", "--curve", "a.csv"]).is_err());
+        assert!(parse(&["tighten", "--link", "hopf", "--braid", "1 1"]).is_err());
+        assert!(parse(&["tighten", "3_1", "--link", "hopf"]).is_err());
+        assert!(parse(&["tighten", "--link", "hopf", "--link", "L4a1"]).is_ok());
         assert!(parse(&["tighten", "3_1", "4_1", "--quality", "fine"]).is_ok());
         assert!(parse(&["identify", "a.csv", "--open", "--closed"]).is_err());
     }

@@ -3,6 +3,7 @@
 mod identify;
 mod print;
 mod show;
+mod subject;
 mod table;
 mod tighten;
 
@@ -11,7 +12,7 @@ use crate::error::CliError;
 use crate::output;
 pub(super) use print::print;
 use std::process::ExitCode;
-use topo_knots::KnotTable;
+use topo_knots::{KnotTable, LinkTable};
 
 pub fn run(args: &KnotArgs) -> Result<ExitCode, CliError> {
     let table = KnotTable::builtin_and(args.knots.as_deref())?;
@@ -21,13 +22,22 @@ pub fn run(args: &KnotArgs) -> Result<ExitCode, CliError> {
         KnotCommand::List => {
             let knots: Vec<_> = table.iter().map(show::facts).collect();
             output::data("knots", knots);
+            let links: Vec<_> = LinkTable::builtin().iter().map(show::link_facts).collect();
+            output::data("links", links);
             print(&show::list(&table));
+            print(&show::list_of_links(LinkTable::builtin()));
         }
-        KnotCommand::Show { name } => {
-            let knot = table.get(name)?;
-            output::data("knot", show::facts(&knot));
-            print(&show::entry(&knot));
-        }
+        KnotCommand::Show { name } => match (table.get(name), LinkTable::builtin().get(name)) {
+            (Err(_), Ok(link)) => {
+                output::data("link", show::link_facts(&link));
+                print(&show::link(&link));
+            }
+            (knot, _) => {
+                let knot = knot?;
+                output::data("knot", show::facts(&knot));
+                print(&show::entry(&knot));
+            }
+        },
     }
     Ok(ExitCode::SUCCESS)
 }

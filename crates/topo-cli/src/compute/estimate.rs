@@ -1,6 +1,6 @@
 //! What a command will take, said before the work, and what it took.
 
-use super::order::{Order, more_knots};
+use super::order::{Order, links_used, more_knots};
 use crate::duration::{count, duration};
 use crate::error::CliError;
 use indicatif::DecimalBytes;
@@ -24,6 +24,8 @@ pub fn of_order(order: &Order, settings: &SweepSettings) -> Result<Vec<Stage>, C
         if order.knots {
             let more = more_knots(order.quality, &names, table);
             all = all.then(shapes(&more, &TightenSettings::standard())?);
+            let (links, out) = (links_used(order.quality), order.results);
+            all = all.then(Estimate::of_links(&links, &scene.tighten, out, order.jobs)?);
         }
         stages.push(Stage::shapes(all));
     }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use topo_knots::KnotTable;
+use topo_knots::{KnotTable, LinkTable};
 use topo_lab::{Preset, Shard};
 use topo_view::figures::Figure;
 use topo_view::movies::Movie;
@@ -34,6 +34,17 @@ pub struct Order<'a> {
     pub figures: &'a [Figure],
     /// Movies made of them afterwards.
     pub movies: &'a [Movie],
+}
+
+/// Links whose tight shapes are known exactly for a draft, beyond it all of the table.
+pub fn links_used(quality: Preset) -> Vec<String> {
+    match quality {
+        Preset::Draft => vec!["L2a1".to_owned(), "chain(3)".to_owned()],
+        _ => LinkTable::builtin()
+            .iter()
+            .map(|link| link.name.clone())
+            .collect(),
+    }
 }
 
 /// Beyond draft the table of knots goes on to eight crossings, at the resolution of the standard preset, and always to the user's

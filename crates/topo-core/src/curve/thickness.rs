@@ -64,6 +64,73 @@ pub fn thickness_brute_force(curve: &Polyline) -> Thickness {
     Thickness::new(min_rad(curve), self_distance(curve, false))
 }
 
+/// Thickness of several curves together, such as the components of a link: `dcsd` is the smallest self-distance of any of them or
+/// distance between two, so that tubes of radius `tau` around all of them neither overlap themselves nor each other.
+///
+/// ```math
+/// \tau = \min\left( \min_a \tau_a, \tfrac12 \min_{a \neq b} \mathrm{dist}(a, b) \right)
+/// ```
+///
+/// Of a single curve it is [`thickness`], to the bit; of none it is infinite.
+///
+/// # Validation
+/// `thickness_of_two_rings_is_half_their_distance`, `pruned_thickness_of_several_is_brute_force`
+pub fn thickness_of_all(curves: &[Polyline]) -> Thickness {
+    together(curves, true)
+}
+
+/// The same from every pair of edges, O(n^2) exact distances: the certificate of [`thickness_of_all`].
+pub fn thickness_of_all_brute_force(curves: &[Polyline]) -> Thickness {
+    together(curves, false)
+}
+
+fn together(curves: &[Polyline], prune: bool) -> Thickness {
+    let (mut radius, mut distance) = (f64::INFINITY, f64::INFINITY);
+    for (k, curve) in curves.iter().enumerate() {
+        radius = radius.min(min_rad(curve));
+        distance = distance.min(self_distance(curve, prune));
+        for other in &curves[k + 1..] {
+            distance = nearest(curve, other, distance, prune);
+        }
+    }
+    Thickness::new(radius, distance)
+}
+
+/// Smallest distance between two curves; infinite if one has no edge. Their nearest points are those of a doubly critical pair.
+pub fn distance_between(a: &Polyline, b: &Polyline) -> f64 {
+    nearest(a, b, f64::INFINITY, true)
+}
+
+/// The smaller of `least` and the distance between two curves.
+fn nearest(a: &Polyline, b: &Polyline, mut least: f64, prune: bool) -> f64 {
+    let ends = |curve: &Polyline, k: usize| {
+        let x = curve.vertices();
+        (x[k], *head(x, k))
+    };
+    let half: Vec<f64> = b.edge_lengths().iter().map(|l| 0.5 * l).collect();
+    let middle = |p: &V, q: &V| 0.5 * (p + q);
+    let middles: Vec<V> = (0..b.n_edges())
+        .map(|j| ends(b, j))
+        .map(|(p, q)| middle(&p, &q))
+        .collect();
+    for i in 0..a.n_edges() {
+        let (p, q) = ends(a, i);
+        let (here, half_here) = (middle(&p, &q), 0.5 * (q - p).norm());
+        for j in 0..b.n_edges() {
+            let reach = least + half_here + half[j];
+            if prune && (here - middles[j]).norm_squared() > reach * reach {
+                continue;
+            }
+            let (r, s) = ends(b, j);
+            let square = closest_points(&p, &q, &r, &s).0;
+            if square < least * least {
+                least = square.sqrt();
+            }
+        }
+    }
+    least
+}
+
 /// Half the smallest distance between points at least π `radius` apart along the curve, another usual definition of the
 /// self-distance: it reaches `radius` exactly when a tube of that radius does not overlap itself.
 pub fn windowed_half_distance(curve: &Polyline, radius: f64) -> f64 {
@@ -225,7 +292,46 @@ mod tests {
         assert!((windowed_half_distance(&hairpin, 0.5) - 0.7).abs() < 1e-12);
     }
 
+    #[test]
+    fn thickness_of_two_rings_is_half_their_distance() {
+        let n = 400;
+        let ring = circle(n, 2.0);
+        // Each through the middle of the other, at right angles: all its points are 2 from that one.
+        let through = |x: &V| V::new(x.x + 2.0, 0.0, x.y);
+        let through = Polyline::new(ring.vertices().iter().map(through).collect(), true);
+        let rings = [ring.clone(), through.expect("a ring")];
+        let found = thickness_of_all(&rings);
+        // Edges run a little within the circles, by 2 (1 - cos(pi / n)) = 6e-5.
+        assert!((1.9998..2.0).contains(&found.dcsd) && found.tau == 0.5 * found.dcsd);
+        assert!((found.min_rad - thickness(&ring).min_rad).abs() < 1e-9);
+        assert!((distance_between(&rings[0], &rings[1]) - found.dcsd).abs() < 1e-15);
+        assert_eq!(thickness_of_all(&rings[..1]), thickness(&ring));
+        assert!(thickness_of_all(&[]).tau.is_infinite());
+        // Rings that cross have no thickness; far apart each has its own.
+        let at = |shift: V| {
+            let moved = ring.vertices().iter().map(|x| x + shift).collect();
+            [ring.clone(), Polyline::new(moved, true).expect("a ring")]
+        };
+        assert!(thickness_of_all(&at(V::new(2.0, 0.1, 0.0))).tau < 1e-12);
+        assert_eq!(thickness_of_all(&at(V::z() * 9.0)), thickness(&ring));
+    }
+
     proptest! {
+        #[test]
+        fn pruned_thickness_of_several_is_brute_force(
+            raw in prop::collection::vec(prop::array::uniform3(-1.0..1.0_f64), 10..40), closed: bool, at in 3..7_usize,
+        ) {
+            let curve = |part: &[[f64; 3]]| {
+                Polyline::new(part.iter().copied().map(V::from).collect(), closed).expect("distinct vertices")
+            };
+            let curves = [curve(&raw[..at]), curve(&raw[at..])];
+            let found = thickness_of_all(&curves);
+            prop_assert_eq!(found, thickness_of_all_brute_force(&curves));
+            let least = curves.iter().map(|c| thickness(c).tau).fold(f64::INFINITY, f64::min);
+            let between = distance_between(&curves[0], &curves[1]);
+            prop_assert!((found.tau - least.min(0.5 * between)).abs() < 1e-15);
+        }
+
         #[test]
         fn pruned_thickness_is_brute_force(
             raw in prop::collection::vec(prop::array::uniform3(-1.0..1.0_f64), 5..40), closed: bool,

@@ -49,6 +49,24 @@ fn utf16(text: &str, little: bool) -> Vec<u8> {
 }
 
 #[test]
+fn components_come_back_to_the_bit() {
+    let curves = crate::braid_closure(&[1, -2, 1, -2, 1, -2]).expect("a link");
+    for (format, name) in [
+        (CurveFormat::Csv, "link.csv"),
+        (CurveFormat::Xyz, "link.xyz"),
+        (CurveFormat::Vect, "link.vect"),
+    ] {
+        let text = curves_text(&curves, format);
+        let read = parse_components(Path::new(name), &text, format).expect("components");
+        assert_eq!(read.len(), 3, "{name}");
+        for (component, curve) in read.iter().zip(&curves) {
+            assert_eq!(component.vertices, curve.vertices(), "{name}");
+            assert!(component.is_closed(), "{name}");
+        }
+    }
+}
+
+#[test]
 fn curves_survive_every_format() {
     let closed = closed_braid(&[1, 1, 1]).expect("a knot");
     let open = Polyline::new(closed.vertices()[..40].to_vec(), false).expect("a chain");

@@ -4,6 +4,7 @@ use super::known::Candidate;
 use super::*;
 use crate::invariant::Visit;
 use crate::name::{self, KnotName, is_amphichiral};
+use crate::rings::Rings;
 use crate::{KnotEntry, closed_braid};
 
 static PLANAR_DIAGRAMS: &str = include_str!("../../data/pd.csv");
@@ -36,7 +37,12 @@ fn planar_diagram(cell: &str) -> Diagram {
         };
         signs.push(if is_rightward { 1 } else { -1 });
     }
-    Diagram { visits, signs }
+    let rings = Rings::one(visits.len());
+    Diagram {
+        visits,
+        signs,
+        rings,
+    }
 }
 
 fn mirrored(mut diagram: Diagram) -> Diagram {

@@ -1,4 +1,6 @@
-//! A knot diagram as a signed Gauss code, and the moves that shorten it.
+//! A diagram of a knot or a link as a signed Gauss code, and the moves that shorten it.
+
+use crate::rings::Rings;
 
 /// One passage of the curve through a crossing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -9,13 +11,15 @@ pub(crate) struct Visit {
     pub over: bool,
 }
 
-/// A diagram: the 2n visits along the curve, and the sign of each of the n crossings.
+/// A diagram: the 2n visits along the curve, or along one component after the other, and the sign of each of the n crossings.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Diagram {
     /// Visits in the order of the curve.
     pub visits: Vec<Visit>,
     /// +1 where the lower strand crosses the upper one from right to left, else -1.
     pub signs: Vec<i8>,
+    /// The visits of each component; one without any is a circle apart from the rest.
+    pub rings: Rings,
 }
 
 impl Diagram {
@@ -26,8 +30,8 @@ impl Diagram {
 
     /// Removes crossings by Reidemeister's first and second move until neither applies.
     ///
-    /// Two crossings that follow each other on both of their strands bound a bigon in any planar diagram of one component, so
-    /// the code alone shows where the second move applies.
+    /// Two crossings that follow each other on both of their strands bound a bigon in any planar diagram, but for what is apart
+    /// from the rest or joined to it by a single crossing, which can be moved away. So the code alone shows where the second move applies.
     pub fn cancel(&mut self) {
         let mut alive = vec![true; self.signs.len()];
         let mut place = vec![[0usize; 2]; self.signs.len()];
@@ -40,9 +44,10 @@ impl Diagram {
             for (k, v) in self.visits.iter().enumerate() {
                 place[v.crossing as usize][usize::from(v.over)] = k;
             }
+            let next = self.rings.next();
             let mut changed = false;
             for k in 0..n {
-                let (a, b) = (self.visits[k], self.visits[(k + 1) % n]);
+                let (a, b) = (self.visits[k], self.visits[next[k]]);
                 let (ca, cb) = (a.crossing as usize, b.crossing as usize);
                 if !alive[ca] || !alive[cb] {
                     continue;
@@ -53,7 +58,7 @@ impl Diagram {
                 } else if a.over == b.over {
                     let other = usize::from(!a.over);
                     let (pa, pb) = (place[ca][other], place[cb][other]);
-                    if (pa + 1) % n == pb || (pb + 1) % n == pa {
+                    if next[pa] == pb || next[pb] == pa {
                         alive[ca] = false;
                         alive[cb] = false;
                         changed = true;
@@ -64,11 +69,68 @@ impl Diagram {
                 break;
             }
             any = true;
-            self.visits.retain(|v| alive[v.crossing as usize]);
+            self.keep(&alive);
         }
         if any {
             self.renumber(&alive);
         }
+    }
+
+    /// Drops the visits of crossings that are not alive.
+    fn keep(&mut self, alive: &[bool]) {
+        let visits = &self.visits;
+        self.rings = self.rings.retained(|k| alive[visits[k].crossing as usize]);
+        self.visits.retain(|v| alive[v.crossing as usize]);
+    }
+
+    /// Lifts off each component that lies above or below all it crosses; true if there was one.
+    ///
+    /// # Validation
+    /// `components_above_all_else_are_lifted_off`
+    pub fn lift(&mut self) -> bool {
+        let mut alive = vec![true; self.signs.len()];
+        for range in self.rings.ranges() {
+            let own = &self.visits[range];
+            let over = own.first().is_some_and(|v| v.over);
+            if own.iter().all(|v| v.over == over) {
+                own.iter().for_each(|v| alive[v.crossing as usize] = false);
+            }
+        }
+        let any = alive.contains(&false);
+        if any {
+            self.keep(&alive);
+            self.renumber(&alive);
+        }
+        any
+    }
+
+    /// The two components of each crossing, the upper one first.
+    pub fn crossing_rings(&self) -> Vec<[usize; 2]> {
+        let mut rings = vec![[0; 2]; self.n_crossings()];
+        for (k, visit) in self.visits.iter().enumerate() {
+            rings[visit.crossing as usize][usize::from(!visit.over)] = self.rings.ring(k);
+        }
+        rings
+    }
+
+    /// The diagram of some components that no crossing joins to the others.
+    pub fn part(&self, components: &[usize]) -> Self {
+        let mut part = self.clone();
+        let is_in = |k: usize| components.contains(&self.rings.ring(k));
+        let mut alive = vec![false; self.signs.len()];
+        let visits = self.visits.iter().enumerate();
+        visits.for_each(|(k, v)| alive[v.crossing as usize] |= is_in(k));
+        part.keep(&alive);
+        part.renumber(&alive);
+        part.rings = Rings::of(components.iter().map(|ring| self.rings.range(*ring).len()));
+        part
+    }
+
+    /// Sum of the signs of the crossings of components with themselves: it does not depend on the orientations.
+    pub fn own_writhe(&self) -> i32 {
+        let rings = self.crossing_rings();
+        let own = rings.iter().zip(&self.signs).filter(|([a, b], _)| a == b);
+        own.map(|(_, sign)| i32::from(*sign)).sum()
     }
 
     /// Place of a half-edge, counterclockwise from the outgoing upper one.
@@ -83,9 +145,10 @@ impl Diagram {
 
     /// The other half of each half-edge; half-edge k of crossing c is number 4 c + k.
     pub fn twins(&self) -> Vec<usize> {
+        let next = self.rings.next();
         let mut twin = vec![0; 4 * self.n_crossings()];
         for (k, here) in self.visits.iter().enumerate() {
-            let there = self.visits[(k + 1) % self.visits.len()];
+            let there = self.visits[next[k]];
             let out = 4 * here.crossing as usize + self.slot(*here, true);
             let into = 4 * there.crossing as usize + self.slot(there, false);
             (twin[out], twin[into]) = (into, out);
@@ -121,7 +184,22 @@ mod tests {
                 .map(|&(crossing, over)| Visit { crossing, over })
                 .collect(),
             signs: signs.to_vec(),
+            rings: Rings::one(visits.len()),
         }
+    }
+
+    #[test]
+    fn components_above_all_else_are_lifted_off() {
+        let mut above = code(&[(0, true), (1, true), (0, false), (1, false)], &[1, -1]);
+        above.rings = Rings::of([2, 2]);
+        assert!(above.lift() && !above.lift());
+        assert_eq!((above.n_crossings(), above.rings), (0, Rings::of([0, 0])));
+        let mut linked = code(&[(0, true), (1, false), (0, false), (1, true)], &[1, 1]);
+        linked.rings = Rings::of([2, 2]);
+        assert!(!linked.lift());
+        linked.cancel();
+        assert_eq!((linked.n_crossings(), linked.own_writhe()), (2, 0));
+        assert_eq!(linked.crossing_rings(), [[0, 1], [1, 0]]);
     }
 
     #[test]

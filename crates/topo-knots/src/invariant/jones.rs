@@ -60,28 +60,7 @@ impl Jones {
 
     /// The polynomial as text, as `t + t^3 - t^4`.
     pub fn text(&self) -> String {
-        let mut text = String::new();
-        for (k, c) in self.coefficients.iter().enumerate() {
-            let power = self.lowest + k as i32;
-            let sign = match (*c < 0, text.is_empty()) {
-                (_, _) if *c == 0 => continue,
-                (true, true) => "-",
-                (true, false) => " - ",
-                (false, true) => "",
-                (false, false) => " + ",
-            };
-            text += sign;
-            let size = c.unsigned_abs();
-            if size != 1 || power == 0 {
-                text += &size.to_string();
-            }
-            match power {
-                0 => {}
-                1 => text += "t",
-                _ => text += &format!("t^{power}"),
-            }
-        }
-        text
+        text(&self.coefficients, |k| 2 * (self.lowest + k))
     }
 
     /// Whether V(1) = 1, V'(1) = 0 and |V(-1)| is the determinant, as for every knot.
@@ -95,6 +74,33 @@ impl Jones {
         }
         at_one == 1 && slope == 0 && at_minus_one.unsigned_abs() == u128::from(determinant)
     }
+}
+
+/// A polynomial in t as text, given twice the power of each coefficient: powers of links may be halves.
+pub(crate) fn text(coefficients: &[i64], twice_power: impl Fn(i32) -> i32) -> String {
+    let mut text = String::new();
+    for (k, c) in coefficients.iter().enumerate() {
+        let twice = twice_power(k as i32);
+        let sign = match (*c < 0, text.is_empty()) {
+            (_, _) if *c == 0 => continue,
+            (true, true) => "-",
+            (true, false) => " - ",
+            (false, true) => "",
+            (false, false) => " + ",
+        };
+        text += sign;
+        let size = c.unsigned_abs();
+        if size != 1 || twice == 0 {
+            text += &size.to_string();
+        }
+        match twice {
+            0 => {}
+            2 => text += "t",
+            _ if twice % 2 == 0 => text += &format!("t^{}", twice / 2),
+            _ => text += &format!("t^({twice}/2)"),
+        }
+    }
+    text
 }
 
 /// Jones polynomial of a diagram of a knot, from Kauffman's bracket and the writhe w; `None` when it has too many crossings or
@@ -118,6 +124,16 @@ pub(super) fn jones(diagram: &Diagram) -> Option<Jones> {
     if n == 0 {
         return Some(Jones::one());
     }
+    let writhe: i32 = diagram.signs.iter().map(|s| i32::from(*s)).sum();
+    bracket(diagram)?.into_jones(writhe)
+}
+
+/// Kauffman's bracket of a diagram of at least one curve, that of a circle being 1; `None` as for [`jones`].
+pub(super) fn bracket(diagram: &Diagram) -> Option<Power> {
+    let n = diagram.n_crossings();
+    if n > MOST_CROSSINGS {
+        return None;
+    }
     let ends = edges_around_crossings(diagram);
     let mut front = Front::default();
     front.states.insert(Vec::new(), Power::one());
@@ -132,18 +148,19 @@ pub(super) fn jones(diagram: &Diagram) -> Option<Jones> {
             return None;
         }
     }
-    let bracket = front.states.remove(&Vec::new())?.without_one_loop()?;
-    let writhe: i32 = diagram.signs.iter().map(|s| i32::from(*s)).sum();
-    bracket.into_jones(writhe)
+    let n_circles = diagram.rings.ranges().filter(|r| r.is_empty()).count();
+    let mut bracket = Power::default();
+    bracket.add(&front.states.remove(&Vec::new())?, 0, n_circles);
+    bracket.without_one_loop()
 }
 
 /// The edges that meet each crossing, counterclockwise from the one on which the upper strand leaves.
 fn edges_around_crossings(diagram: &Diagram) -> Vec<[u16; 4]> {
     let mut ends = vec![[0; 4]; diagram.n_crossings()];
-    let n_edges = diagram.visits.len();
+    let before = diagram.rings.before();
     for (k, visit) in diagram.visits.iter().enumerate() {
         // Edge k leaves visit k.
-        let (out, into) = (k as u16, ((k + n_edges - 1) % n_edges) as u16);
+        let (out, into) = (k as u16, before[k] as u16);
         let c = visit.crossing as usize;
         if visit.over {
             (ends[c][0], ends[c][2]) = (out, into);
@@ -212,9 +229,9 @@ fn join(pairs: &mut Vec<[u16; 2]>, [a, b]: [u16; 2]) -> bool {
 
 /// A Laurent polynomial in A whose powers all have one parity: `coefficients[k]` is that of A^(lowest + 2 k).
 #[derive(Clone, Debug, Default)]
-struct Power {
-    lowest: i32,
-    coefficients: Vec<i128>,
+pub(super) struct Power {
+    pub lowest: i32,
+    pub coefficients: Vec<i128>,
 }
 
 impl Power {
@@ -274,6 +291,15 @@ impl Power {
 
     /// (-A^3)^-writhe times the bracket, in powers of t = A^-4.
     fn into_jones(self, writhe: i32) -> Option<Jones> {
+        let (four_times_lowest, coefficients) = self.in_powers_of_t(writhe)?;
+        (four_times_lowest % 4 == 0).then_some(Jones {
+            lowest: four_times_lowest / 4,
+            coefficients,
+        })
+    }
+
+    /// The same for links, with four times the lowest power, which need not be whole, and the coefficients.
+    pub fn in_powers_of_t(self, writhe: i32) -> Option<(i32, Vec<i64>)> {
         let sign = if writhe % 2 == 0 { 1 } else { -1 };
         let first = self.coefficients.iter().position(|c| *c != 0)?;
         let last = self.coefficients.iter().rposition(|c| *c != 0)?;
@@ -281,16 +307,12 @@ impl Power {
         let highest = lowest + 2 * (last - first) as i32;
         let kept = &self.coefficients[first..=last];
         let stray = |(k, c): (usize, &i128)| k % 2 == 1 && *c != 0;
-        if lowest % 4 != 0 || highest % 4 != 0 || kept.iter().enumerate().any(stray) {
+        if kept.iter().enumerate().any(stray) {
             return None;
         }
         let in_t = kept.iter().step_by(2).rev();
-        Some(Jones {
-            lowest: -highest / 4,
-            coefficients: in_t
-                .map(|c| i64::try_from(sign * c).ok())
-                .collect::<Option<_>>()?,
-        })
+        let coefficients = in_t.map(|c| i64::try_from(sign * c).ok());
+        Some((-highest, coefficients.collect::<Option<_>>()?))
     }
 }
 

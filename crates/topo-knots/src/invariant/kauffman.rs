@@ -46,7 +46,8 @@ impl Point {
 static POINT: LazyLock<Point> =
     LazyLock::new(|| Point::new(314_159_265_358_979_323, 271_828_182_845_904_523));
 
-/// Value of the polynomial of a knot; `None` if its diagram would take too long.
+/// Value of the polynomial of a knot, or of a link with the writhe w of its components alone, so that their orientations do not
+/// matter; `None` if its diagram would take too long.
 ///
 /// # Validation
 /// `kauffman_polynomials_as_published`, `at_a_line_of_points_it_is_the_jones_polynomial`.
@@ -65,10 +66,10 @@ fn at(diagram: &Diagram, point: &Point) -> Option<u64> {
     }
     let link = Link {
         twin: diagram.twins().iter().map(|h| *h as u8).collect(),
-        n_circles: usize::from(diagram.n_crossings() == 0),
+        n_circles: diagram.rings.ranges().filter(|r| r.is_empty()).count(),
     };
     let mut left = MOST_DIAGRAMS;
-    let writhe: i32 = diagram.signs.iter().map(|s| i32::from(*s)).sum();
+    let writhe = diagram.own_writhe();
     Some(mul(power(point.a, -writhe), link.value(point, &mut left)?))
 }
 

@@ -5,6 +5,7 @@ use rand_pcg::Pcg64;
 use std::collections::VecDeque;
 
 use super::diagram::{Diagram, Visit};
+use crate::rings::Rings;
 
 /// Most crossings of a diagram that is treated: the work grows with their third power.
 const MOST_CROSSINGS: usize = 300;
@@ -17,7 +18,7 @@ impl Diagram {
     pub fn simplify(&mut self) {
         self.cancel();
         if self.n_crossings() <= MOST_CROSSINGS {
-            while self.pass(None) {
+            while self.pass(None) || self.rings.n_rings() > 1 && self.lift() {
                 self.cancel();
             }
         }
@@ -39,9 +40,9 @@ impl Diagram {
     /// Moves one run to another path: the first run that gets shorter or, with the state of a random number generator, any that
     /// gets no longer.
     fn pass(&mut self, mut random: Option<&mut Pcg64>) -> bool {
-        let n = self.visits.len();
-        let begins = |k: &usize| self.visits[*k].over != self.visits[(*k + n - 1) % n].over;
-        let mut starts: Vec<usize> = (0..n).filter(begins).collect();
+        let (next, before) = (self.rings.next(), self.rings.before());
+        let begins = |k: &usize| self.visits[*k].over != self.visits[before[*k]].over;
+        let mut starts: Vec<usize> = (0..self.visits.len()).filter(begins).collect();
         if let Some(rng) = random.as_deref_mut() {
             let by = rng.random_range(0..starts.len().max(1));
             starts.rotate_left(by);
@@ -50,25 +51,30 @@ impl Diagram {
         let faces = FaceGraph::of(self);
         for start in starts {
             let over = self.visits[start].over;
-            let is_in_run = |m: &usize| self.visits[(start + m) % n].over == over;
-            let length = (1..n).take_while(is_in_run).count() + 1;
-            let most = if random.is_some() { length } else { length - 1 };
-            let way = faces.way(n, start, length, most, random.as_deref_mut());
+            let mut run = vec![start];
+            let mut last = start;
+            while self.visits[next[last]].over == over {
+                last = next[last];
+                run.push(last);
+            }
+            let most = run.len() - usize::from(random.is_none());
+            let way = faces.way(before[start], &run, most, random.as_deref_mut());
             if let Some(way) = way {
-                *self = self.rerouted(start, length, &way);
+                *self = self.rerouted(&run, &way);
                 return true;
             }
         }
         false
     }
 
-    /// The diagram with the run of `length` visits from `start` on laid along `way`.
-    fn rerouted(&self, start: usize, length: usize, way: &[Step]) -> Self {
+    /// The diagram with the run of visits laid along `way`.
+    fn rerouted(&self, run: &[usize], way: &[Step]) -> Self {
         let n = self.visits.len();
+        let start = run[0];
         let over = self.visits[start].over;
         let mut name = vec![Some(0); self.signs.len()];
-        for m in 0..length {
-            name[self.visits[(start + m) % n].crossing as usize] = None;
+        for k in run {
+            name[self.visits[*k].crossing as usize] = None;
         }
         let mut signs = Vec::with_capacity(self.signs.len());
         for (name, sign) in name.iter_mut().zip(&self.signs) {
@@ -85,24 +91,41 @@ impl Diagram {
             signs.push(if step.from_left == over { 1 } else { -1 });
         }
         let mut visits = Vec::with_capacity(2 * signs.len());
-        for j in (start + length..start + n).map(|j| j % n) {
-            let visit = self.visits[j];
-            if let Some(crossing) = name[visit.crossing as usize] {
-                visits.push(Visit { crossing, ..visit });
+        let mut sizes = Vec::with_capacity(self.rings.n_rings());
+        for range in self.rings.ranges() {
+            let before = visits.len();
+            // The component of the run begins after it.
+            let (first, n_left) = match range.contains(&start) {
+                true => (start - range.start + run.len(), range.len() - run.len()),
+                false => (0, range.len()),
+            };
+            for m in first..first + n_left {
+                let j = range.start + m % range.len();
+                let visit = self.visits[j];
+                if let Some(crossing) = name[visit.crossing as usize] {
+                    visits.push(Visit { crossing, ..visit });
+                }
+                if let Some(crossing) = crossed[j] {
+                    visits.push(Visit {
+                        crossing,
+                        over: !over,
+                    });
+                }
             }
-            if let Some(crossing) = crossed[j] {
-                visits.push(Visit {
-                    crossing,
-                    over: !over,
+            if range.contains(&start) {
+                let new = (0..way.len() as u32).map(|k| Visit {
+                    crossing: first_new + k,
+                    over,
                 });
+                visits.extend(new);
             }
+            sizes.push(visits.len() - before);
         }
-        let new = (0..way.len() as u32).map(|k| Visit {
-            crossing: first_new + k,
-            over,
-        });
-        visits.extend(new);
-        Self { visits, signs }
+        Self {
+            visits,
+            signs,
+            rings: Rings::of(sizes),
+        }
     }
 }
 
@@ -154,14 +177,16 @@ impl FaceGraph {
     /// is no obstacle.
     fn way(
         &self,
-        n: usize,
-        start: usize,
-        length: usize,
+        before: usize,
+        run: &[usize],
         most: usize,
         mut random: Option<&mut Pcg64>,
     ) -> Option<Vec<Step>> {
-        let (before, after) = ((start + n - 1) % n, (start + length - 1) % n);
-        let is_of_run = |edge: usize| (edge + n - before) % n <= length;
+        let after = run[run.len() - 1];
+        let mut of_run = vec![false; self.sides.len()];
+        of_run[before] = true;
+        run.iter().for_each(|edge| of_run[*edge] = true);
+        let is_of_run = |edge: usize| of_run[edge];
         let mut cost = vec![usize::MAX; self.edges.len()];
         let mut from: Vec<Option<(usize, Step)>> = vec![None; self.edges.len()];
         let mut queue = VecDeque::new();

@@ -1,6 +1,7 @@
-//! Knot diagrams: a closed polygon as it is seen from a point outside, every crossing decided without rounding.
+//! Diagrams: closed polygons as they are seen from a point outside, every crossing decided without rounding.
 
 use super::diagram::{Diagram, Visit};
+use crate::rings::Rings;
 use crate::{KnotError, V, exact};
 
 /// Directions spread evenly over the sphere along Fibonacci's spiral, turned by `seed` about a skew axis.
@@ -32,7 +33,17 @@ pub(crate) fn least_crossing(
     n_views: usize,
     seed: u64,
 ) -> Result<Diagram, KnotError> {
-    let mut viewer = Viewer::default();
+    least_crossing_of(vertices, &Rings::one(vertices.len()), n_views, seed)
+}
+
+/// The same of several closed polygons, with their vertices one after the other.
+pub(crate) fn least_crossing_of(
+    vertices: &[V],
+    rings: &Rings,
+    n_views: usize,
+    seed: u64,
+) -> Result<Diagram, KnotError> {
+    let mut viewer = Viewer::of(rings);
     match viewer.best_of(vertices, n_views, seed)? {
         Some(diagram) => Ok(diagram),
         None => viewer
@@ -62,8 +73,11 @@ struct Passage {
 /// Looks at curves; keeps its buffers between calls.
 #[derive(Debug, Default)]
 struct Viewer {
+    rings: Rings,
+    /// The vertex after each.
+    next: Vec<usize>,
     eye: V,
-    /// Vertices seen from the eye, the first repeated.
+    /// Vertices seen from the eye.
     from_eye: Vec<V>,
     /// Normal of the plane of the eye and each edge, and the sums of the sizes of its terms.
     normals: Vec<(V, V)>,
@@ -83,6 +97,14 @@ const MARGIN: f64 = 1e-11;
 const WORTH_A_TRY: usize = 4;
 
 impl Viewer {
+    fn of(rings: &Rings) -> Self {
+        Self {
+            rings: rings.clone(),
+            next: rings.next(),
+            ..Self::default()
+        }
+    }
+
     fn best_of(
         &mut self,
         vertices: &[V],
@@ -121,12 +143,13 @@ impl Viewer {
         self.signs.clear();
         let n = vertices.len();
         for i in 0..n {
-            let (a, b) = (self.picture[i], self.picture[i + 1]);
+            let (a, b) = (self.picture[i], self.picture[self.next[i]]);
             let (low_x, high_x) = (a[0].min(b[0]) - MARGIN, a[0].max(b[0]) + MARGIN);
             let (low_y, high_y) = (a[1].min(b[1]) - MARGIN, a[1].max(b[1]) + MARGIN);
-            let last = if i == 0 { n - 1 } else { n };
-            for j in i + 2..last {
-                let (c, d) = (self.picture[j], self.picture[j + 1]);
+            let own = self.rings.range(self.rings.ring(i));
+            let last = if i == own.start { own.end - 1 } else { own.end };
+            for j in (i + 2..last).chain(own.end..n) {
+                let (c, d) = (self.picture[j], self.picture[self.next[j]]);
                 if (c[0].min(d[0]) > high_x)
                     | (c[0].max(d[0]) < low_x)
                     | (c[1].min(d[1]) > high_y)
@@ -166,26 +189,28 @@ impl Viewer {
         self.eye = centre + EYE * w.component_mul(&half);
         self.from_eye.clear();
         self.picture.clear();
-        for x in vertices.iter().chain([&vertices[0]]) {
+        for x in vertices {
             self.from_eye.push(x - self.eye);
             let y = (x - centre).component_div(&half);
             let scale = EYE / (EYE - y.dot(&w));
             self.picture.push([y.dot(&u) * scale, y.dot(&v) * scale]);
         }
         self.normals.clear();
-        self.normals.extend(self.from_eye.windows(2).map(|e| {
-            let sizes = |p: &V, q: &V| {
-                let term = |i: usize, j: usize| (p[i] * q[j]).abs() + (p[j] * q[i]).abs();
-                V::new(term(1, 2), term(2, 0), term(0, 1))
-            };
-            (e[0].cross(&e[1]), sizes(&e[0], &e[1]))
-        }));
+        let from_eye = &self.from_eye;
+        self.normals
+            .extend(self.next.iter().enumerate().map(|(i, next)| {
+                let sizes = |p: &V, q: &V| {
+                    let term = |i: usize, j: usize| (p[i] * q[j]).abs() + (p[j] * q[i]).abs();
+                    V::new(term(1, 2), term(2, 0), term(0, 1))
+                };
+                let (p, q) = (&from_eye[i], &from_eye[*next]);
+                (p.cross(q), sizes(p, q))
+            }));
     }
 
     /// Six times the volume of eye, edge and vertex, and a bound of its error; if that leaves the sign open, a number of the right
     /// sign.
     fn side(&self, vertices: &[V], edge: usize, vertex: usize) -> (f64, f64) {
-        let n = vertices.len();
         let (normal, sizes) = &self.normals[edge];
         let to = &self.from_eye[vertex];
         let volume = normal.dot(to);
@@ -193,7 +218,7 @@ impl Viewer {
         if volume.abs() > error {
             return (volume, error);
         }
-        let [a, b, c] = [edge, (edge + 1) % n, vertex % n].map(|k| &vertices[k]);
+        let [a, b, c] = [edge, self.next[edge], vertex].map(|k| &vertices[k]);
         let sign = exact::volume(a, b, c, &self.eye);
         let sign = if sign == 0.0 { 0.0 } else { sign.signum() };
         (sign * f64::MIN_POSITIVE.max(volume.abs()), error)
@@ -201,21 +226,21 @@ impl Viewer {
 
     /// Whether two edges cross, and how; a crossing is noted.
     fn meet(&mut self, vertices: &[V], i: usize, j: usize) -> Meeting {
+        let (i_end, j_end) = (self.next[i], self.next[j]);
         let (c, c_error) = self.side(vertices, i, j);
-        let (d, d_error) = self.side(vertices, i, j + 1);
+        let (d, d_error) = self.side(vertices, i, j_end);
         if (c > 0.0 && d > 0.0) || (c < 0.0 && d < 0.0) {
             return Meeting::Apart;
         }
         let (a, a_error) = self.side(vertices, j, i);
-        let (b, b_error) = self.side(vertices, j, i + 1);
+        let (b, b_error) = self.side(vertices, j, i_end);
         if (a > 0.0 && b > 0.0) || (a < 0.0 && b < 0.0) {
             return Meeting::Apart;
         }
         if a == 0.0 || b == 0.0 || c == 0.0 || d == 0.0 {
             return Meeting::Unclear;
         }
-        let n = vertices.len();
-        let ends = [i, (i + 1) % n, j, (j + 1) % n].map(|k| &vertices[k]);
+        let ends = [i, i_end, j, j_end].map(|k| &vertices[k]);
         let volume = exact::volume(ends[0], ends[1], ends[2], ends[3]);
         if volume == 0.0 {
             return Meeting::Touch;
@@ -248,9 +273,15 @@ impl Viewer {
         self.passages
             .sort_by(|p, q| p.edge.cmp(&q.edge).then(p.low.total_cmp(&q.low)));
         let in_order = |p: &[Passage]| p[0].edge != p[1].edge || p[0].high < p[1].low;
-        self.passages.windows(2).all(in_order).then(|| Diagram {
+        if !self.passages.windows(2).all(in_order) {
+            return None;
+        }
+        let until = |end: usize| self.passages.partition_point(|p| (p.edge as usize) < end);
+        let of_ring = |r: std::ops::Range<usize>| until(r.end) - until(r.start);
+        Some(Diagram {
             visits: self.passages.iter().map(|p| p.visit).collect(),
             signs: self.signs.clone(),
+            rings: Rings::of(self.rings.ranges().map(of_ring)),
         })
     }
 }
@@ -267,7 +298,7 @@ enum Meeting {
 /// The diagram of one view, as it is seen.
 #[cfg(test)]
 pub(crate) fn one_view(vertices: &[V], seed: u64) -> Diagram {
-    let mut viewer = Viewer::default();
+    let mut viewer = Viewer::of(&Rings::one(vertices.len()));
     let mut views = fibonacci_directions(16, seed).filter_map(|direction| {
         match viewer.look(vertices, direction, false, usize::MAX) {
             View::Diagram(diagram) => Some(diagram),

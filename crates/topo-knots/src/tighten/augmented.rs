@@ -4,13 +4,15 @@ use std::collections::HashMap;
 use std::f64::consts::PI;
 
 use topo_core::{Polyline, closest_points, vertex_radius};
-use topo_rod::contact::close_pairs;
 use topo_sparse::SparseCholesky;
 
 use super::constraints::radius_gradient;
 use super::lbfgs::minimise;
+use super::pairs::all_close_pairs;
 use super::stop::Stop;
-use crate::{V, thickness};
+use crate::V;
+use crate::curves::Curves;
+use crate::rings::Rings;
 
 /// Strands nearer than this have a strut; more distant ones are included only when the list is rebuilt.
 const REACH: f64 = 2.3;
@@ -28,15 +30,15 @@ const MOST_STEPS: usize = 400;
 
 /// What the second method came to.
 pub(super) struct Settled {
-    /// The curve, at thickness about 1.
-    pub curve: Polyline,
+    /// The curves, at thickness about 1.
+    pub curves: Curves,
     /// Evaluations of energy and gradient.
     pub n_evaluations: usize,
     /// Whether the constraints were met to the tolerance.
     pub converged: bool,
 }
 
-/// Shortens a closed curve at thickness 1, keeping its number of vertices, until constraints are violated by less than
+/// Shortens closed curves at thickness 1, keeping their numbers of vertices, until constraints are violated by less than
 /// `tolerance` tube radii.
 ///
 /// ```math
@@ -44,16 +46,12 @@ pub(super) struct Settled {
 /// \qquad \lambda_k \leftarrow \max(0, \lambda_k - \rho c_k)
 /// ```
 ///
-/// Here c is the distance between two edges minus 2, or the radius of curvature at a vertex minus 1, N the number of edges, L_0
-/// the length at the start and ρ the stiffness.
-pub(super) fn settle(start: &Polyline, tolerance: f64, stop: &Stop) -> Option<Settled> {
-    let curve = start.scaled(1.0 / thickness(start).tau).ok()?;
-    let mut problem = Problem::new(&curve)?;
-    let mut x: Vec<f64> = curve
-        .vertices()
-        .iter()
-        .flat_map(|v| [v.x, v.y, v.z])
-        .collect();
+/// Here c is the distance between two edges minus 2, or the radius of curvature at a vertex minus 1, N the number of edges of a curve,
+/// L_0 its length at the start and ρ the stiffness.
+pub(super) fn settle(start: &Curves, tolerance: f64, stop: &Stop) -> Option<Settled> {
+    let curves = start.scaled(1.0 / start.thickness().tau).ok()?;
+    let mut problem = Problem::new(&curves)?;
+    let mut x = curves.coordinates();
     let mut n_evaluations = 0;
     let mut last_violation = f64::INFINITY;
     let mut converged = false;
@@ -86,19 +84,23 @@ pub(super) fn settle(start: &Polyline, tolerance: f64, stop: &Stop) -> Option<Se
         }
         last_violation = violation;
     }
-    let vertices = x.chunks_exact(3).map(V::from_column_slice).collect();
+    let vertices = x.chunks_exact(3).map(V::from_column_slice);
     Some(Settled {
-        curve: Polyline::new(vertices, true).ok()?,
+        curves: curves.with_vertices(vertices)?,
         n_evaluations,
         converged,
     })
 }
 
-/// The augmented Lagrangian of one curve.
+/// The augmented Lagrangian of curves.
 pub(super) struct Problem {
     n: usize,
-    /// Spring constant of the edges.
-    spring: f64,
+    rings: Rings,
+    /// The vertex after each, and before.
+    next: Vec<usize>,
+    before: Vec<usize>,
+    /// Spring constant of each edge.
+    spring: Vec<f64>,
     stiffness: f64,
     struts: Vec<(u32, u32)>,
     strut_force: Vec<f64>,
@@ -110,12 +112,20 @@ pub(super) struct Problem {
 }
 
 impl Problem {
-    fn new(curve: &Polyline) -> Option<Self> {
-        let n = curve.n_vertices();
-        let pattern: Vec<(u32, u32)> = (0..n as u32).map(|i| (i, (i + 1) % n as u32)).collect();
+    fn new(curves: &Curves) -> Option<Self> {
+        let rings = curves.rings();
+        let (n, next) = (rings.n(), rings.next());
+        let pattern: Vec<(u32, u32)> = next.iter().zip(0..).map(|(j, i)| (i, *j as u32)).collect();
+        let constant = |part: &Polyline| {
+            let n = part.n_vertices();
+            std::iter::repeat_n(n as f64 / part.length(), n)
+        };
         let mut problem = Self {
             n,
-            spring: n as f64 / curve.length(),
+            before: rings.before(),
+            next,
+            rings,
+            spring: curves.parts().iter().flat_map(constant).collect(),
             stiffness: STIFFNESS,
             struts: Vec::new(),
             strut_force: Vec::new(),
@@ -133,22 +143,21 @@ impl Problem {
         self.stiffness *= factor;
         for i in 0..self.n {
             let diagonal = self.preconditioner.slot(i, i)?;
-            let next = self.preconditioner.slot(i, (i + 1) % self.n)?;
+            let next = self.preconditioner.slot(i, self.next[i])?;
             let values = self.preconditioner.values_mut();
-            values[diagonal] = 2.0 * self.spring + 0.3 * self.stiffness;
-            values[next] = -self.spring;
+            values[diagonal] = 2.0 * self.spring[i] + 0.3 * self.stiffness;
+            values[next] = -self.spring[i];
         }
         self.preconditioner.factor().ok()
     }
 
     fn at(&self, x: &[f64], i: usize) -> V {
-        let i = if i == self.n { 0 } else { i };
         V::new(x[3 * i], x[3 * i + 1], x[3 * i + 2])
     }
 
     fn length(&self, x: &[f64]) -> f64 {
         (0..self.n)
-            .map(|i| (self.at(x, i + 1) - self.at(x, i)).norm())
+            .map(|i| (self.at(x, self.next[i]) - self.at(x, i)).norm())
             .sum()
     }
 
@@ -156,7 +165,7 @@ impl Problem {
     fn watch(&mut self, x: &[f64]) {
         let vertices: Vec<V> = x.chunks_exact(3).map(V::from_column_slice).collect();
         let h = self.length(x) / self.n as f64;
-        close_pairs(&vertices, true, REACH, &mut self.pairs);
+        all_close_pairs(&vertices, &self.rings, REACH, &mut self.pairs);
         let before: HashMap<(u32, u32), f64> = self
             .struts
             .iter()
@@ -164,8 +173,10 @@ impl Problem {
             .zip(self.strut_force.iter().copied())
             .collect();
         let apart = |&(i, j): &(u32, u32)| {
+            let ring = self.rings.ring(i as usize);
             let between = (j - i) as usize;
-            between.min(self.n - between) as f64 * h >= PI
+            let range = self.rings.range(ring);
+            j as usize >= range.end || between.min(range.len() - between) as f64 * h >= PI
         };
         self.struts.clear();
         self.struts.extend(self.pairs.iter().copied().filter(apart));
@@ -180,8 +191,8 @@ impl Problem {
     /// Value of a strut's constraint with the unit vector from the second edge to the first, and where on both.
     fn strut(&self, x: &[f64], (i, j): (u32, u32)) -> (f64, V, f64, f64) {
         let (i, j) = (i as usize, j as usize);
-        let (a, b) = (self.at(x, i), self.at(x, i + 1));
-        let (c, d) = (self.at(x, j), self.at(x, j + 1));
+        let (a, b) = (self.at(x, i), self.at(x, self.next[i]));
+        let (c, d) = (self.at(x, j), self.at(x, self.next[j]));
         let (d2, s, t) = closest_points(&a, &b, &c, &d);
         let distance = d2.sqrt().max(1e-12);
         let normal = ((a + (b - a) * s) - (c + (d - c) * t)) / distance;
@@ -189,9 +200,11 @@ impl Problem {
     }
 
     fn edges(&self, x: &[f64], i: usize) -> (V, V) {
-        let before = if i == 0 { self.n - 1 } else { i - 1 };
         let here = self.at(x, i);
-        (here - self.at(x, before), self.at(x, i + 1) - here)
+        (
+            here - self.at(x, self.before[i]),
+            self.at(x, self.next[i]) - here,
+        )
     }
 
     /// New multipliers; returns the largest violation.
@@ -220,18 +233,19 @@ impl super::lbfgs::Objective for Problem {
     fn value(&mut self, x: &[f64], gradient: &mut [f64]) -> f64 {
         let n = self.n;
         gradient.fill(0.0);
+        let (next, before) = (&self.next, &self.before);
         let mut add = |i: usize, v: V| {
-            let i = 3 * if i == n { 0 } else { i };
+            let i = 3 * i;
             gradient[i] += v.x;
             gradient[i + 1] += v.y;
             gradient[i + 2] += v.z;
         };
         let mut total = 0.0;
         for i in 0..n {
-            let e = self.at(x, i + 1) - self.at(x, i);
-            total += 0.5 * self.spring * e.norm_squared();
-            add(i, e * -self.spring);
-            add(i + 1, e * self.spring);
+            let e = self.at(x, next[i]) - self.at(x, i);
+            total += 0.5 * self.spring[i] * e.norm_squared();
+            add(i, e * -self.spring[i]);
+            add(next[i], e * self.spring[i]);
         }
         let rho = self.stiffness;
         for (k, &pair) in self.struts.iter().enumerate() {
@@ -241,9 +255,9 @@ impl super::lbfgs::Objective for Problem {
                 total += 0.5 * force * force / rho;
                 let (i, j) = (pair.0 as usize, pair.1 as usize);
                 add(i, normal * (-force * (1.0 - s)));
-                add(i + 1, normal * (-force * s));
+                add(next[i], normal * (-force * s));
                 add(j, normal * (force * (1.0 - t)));
-                add(j + 1, normal * (force * t));
+                add(next[j], normal * (force * t));
             }
         }
         for i in 0..n {
@@ -253,9 +267,9 @@ impl super::lbfgs::Objective for Problem {
             if radius < KINK_REACH && force > 0.0 {
                 total += 0.5 * force * force / rho;
                 let (da, db) = radius_gradient(&a, &b);
-                add(if i == 0 { n - 1 } else { i - 1 }, da * force);
+                add(before[i], da * force);
                 add(i, (db - da) * force);
-                add(i + 1, db * -force);
+                add(next[i], db * -force);
             }
         }
         total
@@ -282,15 +296,17 @@ mod tests {
 
     #[test]
     fn gradient_is_that_of_the_lagrangian() {
-        let curve = crate::closed_braid(&[1, 1, 1]).expect("a knot");
-        let curve = curve.resampled(70).expect("resampled");
-        let curve = curve.scaled(0.8).expect("scaled");
-        let mut problem = Problem::new(&curve).expect("a problem");
-        let mut x: Vec<f64> = curve
-            .vertices()
-            .iter()
-            .flat_map(|v| [v.x, v.y, v.z])
-            .collect();
+        // A trefoil, and a circle and a trefoil linked.
+        for (word, n) in [(&[1, 1, 1][..], 70), (&[1, 1, 1, 2, 2], 110)] {
+            check_gradient(crate::braid_closure(word).expect("closed").into(), n);
+        }
+    }
+
+    fn check_gradient(curves: Curves, n: usize) {
+        let curves = curves.resampled(n).expect("resampled");
+        let curves = curves.scaled(0.8).expect("scaled");
+        let mut problem = Problem::new(&curves).expect("a problem");
+        let mut x = curves.coordinates();
         // Unequal edges: the shorter of two equal ones has no derivative.
         x.iter_mut()
             .enumerate()

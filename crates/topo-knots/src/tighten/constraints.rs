@@ -3,9 +3,10 @@
 use std::f64::consts::PI;
 
 use topo_core::{closest_points, vertex_radius};
-use topo_rod::contact::close_pairs;
 
+use super::pairs::all_close_pairs;
 use crate::V;
+use crate::rings::Rings;
 
 /// Vertices with a larger radius of curvature (in tube radii) cannot become sharp in one step.
 const KINK_REACH: f64 = 3.0;
@@ -58,29 +59,28 @@ impl Row {
     }
 }
 
-/// Rebuilds the constraints of a unit tube around the closed polygon `x` that a step of at most `delta` a vertex may meet.
+/// Rebuilds the constraints of a unit tube around the closed polygons `x` that a step of at most `delta` a vertex may meet.
 ///
-/// Struts are all pairs of edges more than π apart along the curve and closer than 2 + 2 `delta`; kinks all vertices
-/// with a radius of curvature below 3.
-pub(crate) fn rebuild(x: &[V], delta: f64, pairs: &mut Vec<(u32, u32)>, rows: &mut Vec<Row>) {
+/// Struts are all pairs of edges more than π apart along a curve, or of different curves, and closer than 2 + 2 `delta`; kinks all
+/// vertices with a radius of curvature below 3.
+pub(crate) fn rebuild(
+    x: &[V],
+    rings: &Rings,
+    delta: f64,
+    pairs: &mut Vec<(u32, u32)>,
+    rows: &mut Vec<Row>,
+) {
     rows.clear();
-    let n = x.len();
-    let next = |i: usize| if i + 1 == n { 0 } else { i + 1 };
-    let mut arc = Vec::with_capacity(n + 1);
-    arc.push(0.0);
-    for i in 0..n {
-        arc.push(arc[i] + (x[next(i)] - x[i]).norm());
-    }
-    let length = arc[n];
+    let (next, before) = (rings.next(), rings.before());
+    let arcs = Arcs::of(x, rings);
     let reach = 2.0 + 2.0 * delta;
-    close_pairs(x, true, reach, pairs);
+    all_close_pairs(x, rings, reach, pairs);
     for &(i, j) in pairs.iter() {
         let (i, j) = (i as usize, j as usize);
-        let apart = 0.5 * (arc[j] + arc[j + 1] - arc[i] - arc[i + 1]);
-        if apart.min(length - apart) < PI {
+        if arcs.between(i, j) < PI {
             continue;
         }
-        let (a, b, c, d) = (x[i], x[next(i)], x[j], x[next(j)]);
+        let (a, b, c, d) = (x[i], x[next[i]], x[j], x[next[j]]);
         let (d2, s, t) = closest_points(&a, &b, &c, &d);
         if d2 >= reach * reach || d2 == 0.0 {
             continue;
@@ -89,7 +89,7 @@ pub(crate) fn rebuild(x: &[V], delta: f64, pairs: &mut Vec<(u32, u32)>, rows: &m
         let normal = ((a + (b - a) * s) - (c + (d - c) * t)) / distance;
         rows.push(Row {
             guard: Guard::Strut,
-            vertices: [i as u32, next(i) as u32, j as u32, next(j) as u32],
+            vertices: [i as u32, next[i] as u32, j as u32, next[j] as u32],
             gradients: [
                 normal * (1.0 - s),
                 normal * s,
@@ -99,9 +99,8 @@ pub(crate) fn rebuild(x: &[V], delta: f64, pairs: &mut Vec<(u32, u32)>, rows: &m
             bound: 2.0 - distance,
         });
     }
-    for i in 0..n {
-        let before = if i == 0 { n - 1 } else { i - 1 };
-        let after = next(i);
+    for i in 0..x.len() {
+        let (before, after) = (before[i], next[i]);
         let (a, b) = (x[i] - x[before], x[after] - x[i]);
         let radius = vertex_radius(&a, &b);
         if radius < KINK_REACH {
@@ -113,6 +112,47 @@ pub(crate) fn rebuild(x: &[V], delta: f64, pairs: &mut Vec<(u32, u32)>, rows: &m
                 bound: 1.0 - radius,
             });
         }
+    }
+}
+
+/// Distances along curves.
+struct Arcs {
+    /// Component of each edge.
+    ring: Vec<usize>,
+    /// Where each edge begins and ends, along its component.
+    ends: Vec<(f64, f64)>,
+    lengths: Vec<f64>,
+}
+
+impl Arcs {
+    fn of(x: &[V], rings: &Rings) -> Self {
+        let next = rings.next();
+        let mut arcs = Self {
+            ring: Vec::with_capacity(x.len()),
+            ends: Vec::with_capacity(x.len()),
+            lengths: Vec::with_capacity(rings.n_rings()),
+        };
+        for (ring, range) in rings.ranges().enumerate() {
+            let mut at = 0.0;
+            for i in range {
+                let end = at + (x[next[i]] - x[i]).norm();
+                arcs.ring.push(ring);
+                arcs.ends.push((at, end));
+                at = end;
+            }
+            arcs.lengths.push(at);
+        }
+        arcs
+    }
+
+    /// Distance of the middles of two edges i < j along their curve; infinite for edges of two curves.
+    fn between(&self, i: usize, j: usize) -> f64 {
+        if self.ring[i] != self.ring[j] {
+            return f64::INFINITY;
+        }
+        let ((i0, i1), (j0, j1)) = (self.ends[i], self.ends[j]);
+        let apart = 0.5 * (j0 + j1 - i0 - i1);
+        apart.min(self.lengths[self.ring[i]] - apart)
     }
 }
 
@@ -150,7 +190,7 @@ mod tests {
             .enumerate()
             .for_each(|(i, v)| *v *= 1.0 + 0.02 * (2.4 * i as f64).sin());
         let (mut pairs, mut rows) = (Vec::new(), Vec::new());
-        rebuild(&x, 0.6, &mut pairs, &mut rows);
+        rebuild(&x, &Rings::one(x.len()), 0.6, &mut pairs, &mut rows);
         assert!(rows.iter().any(|r| r.guard == Guard::Strut));
         assert!(rows.iter().any(|r| r.guard == Guard::Kink));
         for row in rows.iter().step_by(5) {

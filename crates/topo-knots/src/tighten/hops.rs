@@ -2,18 +2,19 @@
 
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
-use topo_core::Polyline;
 
-use super::check::check_type;
 use super::kick::{kick, squeeze};
 use super::level::Outcome;
+use super::origin::Origin;
 use super::search::{KICK, NEAR_TIE, tighten_loose};
 use super::settings::TightenSettings;
 use super::start::{MOEBIUS_EDGES, MOEBIUS_STEPS, padded, stabilised};
 use super::stop::Stop;
+use super::topology::{Topology, check_type};
+use crate::curves::Curves;
 use crate::inversion::inverted;
-use crate::moebius::relax_moebius;
-use crate::{Invariants, KnotEntry, KnotError, closed_braid, thickness};
+use crate::moebius::relax_moebius_of;
+use crate::{KnotError, braid_closure};
 
 /// Relative rise of the ropelength that is accepted once in e hops.
 const TEMPERATURE: f64 = 2e-3;
@@ -40,8 +41,8 @@ const MOST_FAILURES: usize = 100;
 /// # Validation
 /// `hops_lead_to_published_lengths`
 pub(super) fn hop(
-    entry: &KnotEntry,
-    kind: &Invariants,
+    entry: &impl Origin,
+    kind: &Topology,
     n_hops: usize,
     settings: &TightenSettings,
     stop: &Stop,
@@ -49,7 +50,7 @@ pub(super) fn hop(
     let mut rng = Pcg64::seed_from_u64(settings.seed);
     let mut met: Vec<Outcome> = Vec::new();
     let (mut n_done, mut n_failures, mut n_factorisations) = (0, 0, 0);
-    let sound = |o: &Outcome| check_type(&entry.name, &o.curve, kind, "searching").is_ok();
+    let sound = |o: &Outcome| check_type(entry.name(), &o.curves, kind, "searching").is_ok();
     let is_over = |met: &[Outcome]| !met.is_empty() && stop.asks();
     while n_done < n_hops && n_failures < MOST_FAILURES && !is_over(&met) {
         let tightened = start(entry, &mut rng).and_then(|s| tighten_loose(&s, settings, stop));
@@ -66,7 +67,7 @@ pub(super) fn hop(
             idle += 1;
             n_done += 1;
             let Some(next) =
-                moved(&state.curve, &mut rng).and_then(|c| tighten_loose(&c, settings, stop))
+                moved(&state.curves, &mut rng).and_then(|c| tighten_loose(&c, settings, stop))
             else {
                 continue;
             };
@@ -86,7 +87,7 @@ pub(super) fn hop(
     met.sort_by(|a, b| a.ropelength.total_cmp(&b.ropelength));
     if met.is_empty() {
         return Err(KnotError::NotTightened {
-            knot: entry.name.clone(),
+            knot: entry.name().to_owned(),
             n_starts: n_failures,
             last: "no random word led to a tight curve".to_owned(),
         });
@@ -96,9 +97,9 @@ pub(super) fn hop(
 
 /// Adds a curve unless its basin is known; drops what is far from the best.
 fn keep(met: &mut Vec<Outcome>, found: &Outcome) {
-    let writhe = found.curve.writhe();
+    let writhe = found.curves.writhe();
     let same = |o: &Outcome| {
-        (o.curve.writhe() - writhe).abs() < SAME_WRITHE
+        (o.curves.writhe() - writhe).abs() < SAME_WRITHE
             && (o.ropelength / found.ropelength - 1.0).abs() < SAME_LENGTH
     };
     match met.iter_mut().find(|o| same(o)) {
@@ -112,18 +113,19 @@ fn keep(met: &mut Vec<Outcome>, found: &Outcome) {
 }
 
 /// The closure of a random word of the knot's braid, plain, rounded or rounded and inverted; `None` if it comes out badly.
-fn start(entry: &KnotEntry, rng: &mut Pcg64) -> Option<Polyline> {
+fn start(entry: &impl Origin, rng: &mut Pcg64) -> Option<Curves> {
+    let braid = entry.braid();
     let word = match rng.random_range(0..4) {
-        0 => padded(&entry.braid, rng),
+        0 => padded(braid, rng),
         1 => {
-            let word = stabilised(&entry.braid, rng);
+            let word = stabilised(braid, rng);
             stabilised(&word, rng)
         }
-        _ => stabilised(&entry.braid, rng),
+        _ => stabilised(braid, rng),
     };
-    let mut curve = closed_braid(&word).ok()?;
+    let mut curve = Curves::from(braid_closure(&word).ok()?);
     if rng.random_bool(0.7) {
-        curve = relax_moebius(&curve, MOEBIUS_EDGES[0], MOEBIUS_STEPS).ok()?;
+        curve = relax_moebius_of(&curve, MOEBIUS_EDGES[0], MOEBIUS_STEPS).ok()?;
         entry.verify(&curve).ok()?;
         if rng.random_bool(0.6) {
             curve = inverted(&curve, rng).ok()??;
@@ -134,12 +136,12 @@ fn start(entry: &KnotEntry, rng: &mut Pcg64) -> Option<Polyline> {
 }
 
 /// A curve of the same type some way off.
-fn moved(curve: &Polyline, rng: &mut Pcg64) -> Option<Polyline> {
+fn moved(curve: &Curves, rng: &mut Pcg64) -> Option<Curves> {
     match rng.random_range(0..6) {
-        0 | 1 => kick(curve, KICK * thickness(curve).tau, rng),
+        0 | 1 => kick(curve, KICK * curve.thickness().tau, rng),
         2 => squeeze(&squeeze(curve, rng)?, rng),
         3 => {
-            let round = relax_moebius(curve, MOEBIUS_EDGES[0], MOEBIUS_STEPS / 2).ok()?;
+            let round = relax_moebius_of(curve, MOEBIUS_EDGES[0], MOEBIUS_STEPS / 2).ok()?;
             inverted(&round, rng).ok()?
         }
         _ => squeeze(curve, rng),

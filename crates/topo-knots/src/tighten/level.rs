@@ -1,11 +1,11 @@
 //! Tightening at one resolution: a sequence of quadratic programs.
 
-use topo_core::Polyline;
-
 use super::constraints::{Row, rebuild};
 use super::qp::{self, Hessian};
 use super::stop::Stop;
-use crate::{V, thickness};
+use crate::V;
+use crate::curves::Curves;
+use crate::rings::Rings;
 
 /// How to tighten at one resolution.
 #[derive(Debug, Clone, Copy)]
@@ -30,25 +30,33 @@ pub(crate) struct Level {
 }
 
 impl Level {
-    /// Hessian of the tension of a curve with edges h.
-    fn stretch(&self, h: f64) -> Hessian {
-        Hessian {
-            stencil: [2.0 / h, -1.0 / h, 0.0],
-            weights: self.weights,
-        }
-    }
-
-    /// That and the proximal terms.
-    fn damped(&self, stretch: Hessian, h: f64) -> Hessian {
-        let bend = self.curvature_damping / h.powi(3);
-        Hessian {
-            stencil: [
-                stretch.stencil[0] + self.damping * h + 6.0 * bend,
-                stretch.stencil[1] - 4.0 * bend,
+    /// Hessian of the tension of curves, and that with the proximal terms.
+    fn hessians(&self, curves: &Curves, rings: &Rings) -> [Hessian; 2] {
+        let stretch = stretch(curves, rings, self.weights);
+        let damped = |(h, stencil): (f64, &[f64; 3])| {
+            let bend = self.curvature_damping / h.powi(3);
+            [
+                stencil[0] + self.damping * h + 6.0 * bend,
+                stencil[1] - 4.0 * bend,
                 bend,
-            ],
-            weights: self.weights,
-        }
+            ]
+        };
+        let edges = curves.edge_lengths().into_iter();
+        let damped = Hessian {
+            stencils: edges.zip(&stretch.stencils).map(damped).collect(),
+            ..stretch.clone()
+        };
+        [stretch, damped]
+    }
+}
+
+/// Hessian of the tension of curves with equal edges, with a factor for each axis.
+pub(super) fn stretch(curves: &Curves, rings: &Rings, weights: [f64; 3]) -> Hessian {
+    let stencil = |h: f64| [2.0 / h, -1.0 / h, 0.0];
+    Hessian {
+        rings: rings.clone(),
+        stencils: curves.edge_lengths().into_iter().map(stencil).collect(),
+        weights,
     }
 }
 
@@ -67,11 +75,11 @@ pub(crate) const NEAR_REACH: [f64; 2] = [0.1, 0.01];
 /// What tightening at one resolution came to.
 #[derive(Debug, Clone)]
 pub(crate) struct Outcome {
-    /// Last curve.
-    pub last: Polyline,
-    /// Shortest curve met, in units in which the tube radius was about 1.
-    pub curve: Polyline,
-    /// Its length over its thickness.
+    /// Last curves.
+    pub last: Curves,
+    /// Shortest curves met, in units in which the tube radius was about 1.
+    pub curves: Curves,
+    /// Their length over their thickness.
     pub ropelength: f64,
     /// Matrix factorisations made.
     pub n_factorisations: usize,
@@ -79,7 +87,7 @@ pub(crate) struct Outcome {
     pub converged: bool,
 }
 
-/// Shortens a closed curve at thickness 1, with its number of vertices and its type kept, by a sequence of quadratic programs
+/// Shortens closed curves at thickness 1, with their numbers of vertices and their type kept, by a sequence of quadratic programs
 /// in the displacements y:
 ///
 /// ```math
@@ -87,10 +95,12 @@ pub(crate) struct Outcome {
 /// \qquad A y \ge b
 /// ```
 ///
-/// When it is interrupted, it returns the shortest curve so far.
-pub(crate) fn tighten_level(start: &Polyline, level: &Level, stop: &Stop) -> Option<Outcome> {
-    let n = start.n_vertices();
-    let tau = thickness(start).tau;
+/// The first sum is over the edges of all curves, N and L_0 being those of each; y is every displacement. When it is interrupted, it
+/// returns the shortest curves so far.
+pub(crate) fn tighten_level(start: &Curves, level: &Level, stop: &Stop) -> Option<Outcome> {
+    let rings = start.rings();
+    let n = rings.n();
+    let tau = start.thickness().tau;
     let mut curve = start.scaled(1.0 / tau).ok()?;
     let mut best = curve.clone();
     let mut best_ropelength = curve.length();
@@ -103,18 +113,11 @@ pub(crate) fn tighten_level(start: &Polyline, level: &Level, stop: &Stop) -> Opt
     while n_steps < level.max_steps && !stop.asks() {
         delta = delta.min(LARGEST_STEP * tau);
         let length = curve.length();
-        let h = length / n as f64;
-        rebuild(curve.vertices(), delta, &mut pairs, &mut rows);
-        let stretch = level.stretch(h);
-        let flat: Vec<f64> = curve
-            .vertices()
-            .iter()
-            .flat_map(|x| [x.x, x.y, x.z])
-            .collect();
-        stretch.multiply(&flat, &mut gradient);
-        let hessian = level.damped(stretch, h);
+        rebuild(&curve.vertices(), &rings, delta, &mut pairs, &mut rows);
+        let [stretch, hessian] = level.hessians(&curve, &rings);
+        stretch.multiply(&curve.coordinates(), &mut gradient);
         let gap = 1e-2 * level.tolerance * length;
-        let solution = qp::solve(hessian, &gradient, &rows, gap)?;
+        let solution = qp::solve(&hessian, &gradient, &rows, gap)?;
         n_factorisations += solution.n_iterations;
         n_steps += 1;
         let largest = largest_displacement(&solution.y);
@@ -124,7 +127,7 @@ pub(crate) fn tighten_level(start: &Polyline, level: &Level, stop: &Stop) -> Opt
             1.0
         };
         curve = moved(&curve, alpha, &solution.y)?;
-        tau = thickness(&curve).tau;
+        tau = curve.thickness().tau;
         let ropelength = curve.length() / tau;
         tracing::trace!(
             n_steps,
@@ -155,7 +158,7 @@ pub(crate) fn tighten_level(start: &Polyline, level: &Level, stop: &Stop) -> Opt
     }
     Some(Outcome {
         last: curve,
-        curve: best,
+        curves: best,
         ropelength: best_ropelength,
         n_factorisations,
         converged,
@@ -168,12 +171,8 @@ fn largest_displacement(y: &[f64]) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// The curve moved by `alpha` times the displacements.
-fn moved(curve: &Polyline, alpha: f64, y: &[f64]) -> Option<Polyline> {
-    let moved = curve
-        .vertices()
-        .iter()
-        .zip(y.chunks_exact(3))
-        .map(|(x, y)| x + alpha * V::new(y[0], y[1], y[2]));
-    Polyline::new(moved.collect(), true).ok()
+/// The curves moved by `alpha` times the displacements.
+fn moved(curve: &Curves, alpha: f64, y: &[f64]) -> Option<Curves> {
+    let vertices = curve.vertices().into_iter().zip(y.chunks_exact(3));
+    curve.with_vertices(vertices.map(|(x, y)| x + alpha * V::new(y[0], y[1], y[2])))
 }

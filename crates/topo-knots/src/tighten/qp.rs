@@ -3,12 +3,15 @@
 use topo_sparse::SparseCholesky;
 
 use super::constraints::Row;
+use crate::rings::Rings;
 
-/// Hessian of the objective: a cyclic pentadiagonal matrix for each of the three coordinates.
-#[derive(Debug, Clone, Copy)]
+/// Hessian of the objective: for each of the three coordinates, a cyclic pentadiagonal block for each curve.
+#[derive(Debug, Clone)]
 pub(crate) struct Hessian {
-    /// Diagonal, first and second neighbour.
-    pub stencil: [f64; 3],
+    /// Which vertices each curve has.
+    pub rings: Rings,
+    /// Diagonal, first and second neighbour in the block of each curve.
+    pub stencils: Vec<[f64; 3]>,
     /// Factor of the stencil for each coordinate.
     pub weights: [f64; 3],
 }
@@ -16,13 +19,15 @@ pub(crate) struct Hessian {
 impl Hessian {
     /// out = H y
     pub fn multiply(&self, y: &[f64], out: &mut [f64]) {
-        let n = y.len();
-        let [h0, h1, h2] = self.stencil;
-        for i in 0..n {
-            let along = h0 * y[i]
-                + h1 * (y[(i + 3) % n] + y[(i + n - 3) % n])
-                + h2 * (y[(i + 6) % n] + y[(i + n - 6) % n]);
-            out[i] = self.weights[i % 3] * along;
+        for (range, [h0, h1, h2]) in self.rings.ranges().zip(&self.stencils) {
+            let (n, own) = (3 * range.len(), 3 * range.start..3 * range.end);
+            let (y, out) = (&y[own.clone()], &mut out[own]);
+            for i in 0..n {
+                let along = h0 * y[i]
+                    + h1 * (y[(i + 3) % n] + y[(i + n - 3) % n])
+                    + h2 * (y[(i + 6) % n] + y[(i + n - 6) % n]);
+                out[i] = self.weights[i % 3] * along;
+            }
         }
     }
 }
@@ -49,12 +54,12 @@ const MAX_ITERATIONS: usize = 40;
 /// [mehrotra1992]: https://doi.org/10.1137/0802028
 /// [nocedal2006]: https://doi.org/10.1007/978-0-387-40065-5
 pub(crate) fn solve(
-    hessian: Hessian,
+    hessian: &Hessian,
     gradient: &[f64],
     rows: &[Row],
     tolerance: f64,
 ) -> Option<Solution> {
-    let mut system = System::new(gradient.len() / 3, rows)?;
+    let mut system = System::new(&hessian.rings, rows)?;
     if rows.is_empty() {
         return system.solve_free(hessian, gradient);
     }
@@ -132,7 +137,7 @@ impl Iterate {
     }
 
     /// Residual of the balance of forces; returns the largest.
-    fn find_dual_residual(&mut self, hessian: Hessian, gradient: &[f64], rows: &[Row]) -> f64 {
+    fn find_dual_residual(&mut self, hessian: &Hessian, gradient: &[f64], rows: &[Row]) -> f64 {
         hessian.multiply(&self.y, &mut self.dual_residual);
         self.dual_residual
             .iter_mut()
@@ -262,10 +267,10 @@ fn key(i: usize, j: usize) -> u64 {
 }
 
 /// The pairs of vertices that share an entry of the matrix: neighbours, and those of each row; in order.
-fn coupled(n: usize, rows: &[Row]) -> Vec<u64> {
-    let mut keys: Vec<u64> = Vec::with_capacity(3 * n + 10 * rows.len());
-    for i in 0..n {
-        keys.extend([key(i, i), key(i, (i + 1) % n), key(i, (i + 2) % n)]);
+fn coupled(next: &[usize], rows: &[Row]) -> Vec<u64> {
+    let mut keys: Vec<u64> = Vec::with_capacity(3 * next.len() + 10 * rows.len());
+    for (i, &after) in next.iter().enumerate() {
+        keys.extend([key(i, i), key(i, after), key(i, next[after])]);
     }
     for row in rows {
         for a in 0..row.n() {
@@ -280,8 +285,9 @@ fn coupled(n: usize, rows: &[Row]) -> Vec<u64> {
 }
 
 impl System {
-    fn new(n: usize, rows: &[Row]) -> Option<Self> {
-        let keys = coupled(n, rows);
+    fn new(rings: &Rings, rows: &[Row]) -> Option<Self> {
+        let (n, next) = (rings.n(), rings.next());
+        let keys = coupled(&next, rows);
         let mut pattern = Vec::with_capacity(9 * keys.len());
         for k in &keys {
             let (i, j) = ((k >> 32) as u32, *k as u32);
@@ -307,8 +313,8 @@ impl System {
         }
         let find = |i: usize, j: usize| keys.binary_search(&key(i, j)).ok().map(|k| k as u32);
         let mut stencil = Vec::with_capacity(n);
-        for i in 0..n {
-            stencil.push([find(i, i)?, find(i, (i + 1) % n)?, find(i, (i + 2) % n)?]);
+        for (i, &after) in next.iter().enumerate() {
+            stencil.push([find(i, i)?, find(i, after)?, find(i, next[after])?]);
         }
         let mut row_blocks = Vec::with_capacity(rows.len());
         for row in rows {
@@ -331,7 +337,7 @@ impl System {
     }
 
     /// The minimum without rows: one linear system.
-    fn solve_free(&mut self, hessian: Hessian, gradient: &[f64]) -> Option<Solution> {
+    fn solve_free(&mut self, hessian: &Hessian, gradient: &[f64]) -> Option<Solution> {
         self.assemble(hessian, &[], &[]);
         self.matrix.factor().ok()?;
         let mut y: Vec<f64> = gradient.iter().map(|g| -g).collect();
@@ -343,14 +349,16 @@ impl System {
         })
     }
 
-    fn assemble(&mut self, hessian: Hessian, rows: &[Row], weights: &[f64]) {
+    fn assemble(&mut self, hessian: &Hessian, rows: &[Row], weights: &[f64]) {
         let values = self.matrix.values_mut();
         values.fill(0.0);
-        for places in &self.stencil {
-            for (place, h) in places.iter().zip(hessian.stencil) {
-                let slots = &self.blocks[*place as usize];
-                for p in 0..3 {
-                    values[slots[4 * p] as usize] += hessian.weights[p] * h;
+        for (range, stencil) in hessian.rings.ranges().zip(&hessian.stencils) {
+            for places in &self.stencil[range] {
+                for (place, h) in places.iter().zip(stencil) {
+                    let slots = &self.blocks[*place as usize];
+                    for p in 0..3 {
+                        values[slots[4 * p] as usize] += hessian.weights[p] * h;
+                    }
                 }
             }
         }
@@ -407,10 +415,11 @@ mod tests {
             ),
         ];
         let hessian = Hessian {
-            stencil: [2.0, 0.0, 0.0],
+            rings: Rings::one(8),
+            stencils: vec![[2.0, 0.0, 0.0]],
             weights: [1.0; 3],
         };
-        let found = solve(hessian, &gradient, &rows, 1e-10).expect("solved");
+        let found = solve(&hessian, &gradient, &rows, 1e-10).expect("solved");
         assert!(found.converged);
         for (i, y) in found.y.chunks_exact(3).enumerate() {
             let expected = V::new(1.0, if i == 0 { 2.0 } else { 0.0 }, 0.0);
@@ -425,10 +434,11 @@ mod tests {
     fn without_rows_it_is_a_linear_system() {
         let gradient: Vec<f64> = (0..30).map(|k| (k as f64).sin()).collect();
         let hessian = Hessian {
-            stencil: [6.5, -4.0, 1.0],
+            rings: Rings::of([4, 6]),
+            stencils: vec![[7.5, -2.0, 0.5], [6.5, -4.0, 1.0]],
             weights: [1.0; 3],
         };
-        let found = solve(hessian, &gradient, &[], 1e-9).expect("solved");
+        let found = solve(&hessian, &gradient, &[], 1e-9).expect("solved");
         let mut product = vec![0.0; 30];
         hessian.multiply(&found.y, &mut product);
         assert!(

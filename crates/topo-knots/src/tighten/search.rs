@@ -2,15 +2,14 @@
 
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
-use topo_core::Polyline;
 
-use super::check::check_type;
 use super::kick::{kick, squeeze};
 use super::level::{LOOSE_REACH, Level, Outcome, tighten_level};
 use super::settings::TightenSettings;
 use super::stop::Stop;
-use crate::thickness;
-use crate::{Invariants, KnotError};
+use super::topology::{Topology, check_type};
+use crate::KnotError;
+use crate::curves::Curves;
 
 /// Amplitude of kicks in units of the thickness; below 1 strands cannot pass each other.
 pub(super) const KICK: f64 = 0.7;
@@ -25,8 +24,8 @@ const N_FINALISTS: usize = 2;
 /// nearly as short, and the number of factorisations.
 pub(crate) fn search(
     name: &str,
-    starts: &[Polyline],
-    kind: &Invariants,
+    starts: &[Curves],
+    kind: &Topology,
     settings: &TightenSettings,
     stop: &Stop,
 ) -> Result<(Vec<Outcome>, usize), KnotError> {
@@ -43,7 +42,7 @@ pub(crate) fn search(
             continue;
         };
         n_factorisations += outcome.n_factorisations;
-        match check_type(name, &outcome.curve, kind, "searching") {
+        match check_type(name, &outcome.curves, kind, "searching") {
             Ok(()) => pool.push(outcome),
             Err(error) => last = error.to_string(),
         }
@@ -94,16 +93,16 @@ fn try_move(
     best: &mut Outcome,
     how: Move,
     name: &str,
-    kind: &Invariants,
+    kind: &Topology,
     rng: &mut Pcg64,
     stop: &Stop,
 ) -> usize {
     if stop.asks() {
         return 0;
     }
-    let curve = &best.curve;
+    let curve = &best.curves;
     let moved = match how {
-        Move::Kick => kick(curve, KICK * thickness(curve).tau, rng),
+        Move::Kick => kick(curve, KICK * curve.thickness().tau, rng),
         Move::Squeeze => squeeze(curve, rng),
     };
     let Some(outcome) = moved.and_then(|curve| tighten_level(&curve, &level(), stop)) else {
@@ -111,7 +110,7 @@ fn try_move(
     };
     let n_factorisations = outcome.n_factorisations;
     if outcome.ropelength < best.ropelength
-        && check_type(name, &outcome.curve, kind, "searching").is_ok()
+        && check_type(name, &outcome.curves, kind, "searching").is_ok()
     {
         *best = outcome;
     }
@@ -133,13 +132,13 @@ fn level() -> Level {
 
 /// Tightens a start that may be several times too long: first with as many vertices as it needs to bend.
 pub(super) fn tighten_loose(
-    start: &Polyline,
+    start: &Curves,
     settings: &TightenSettings,
     stop: &Stop,
 ) -> Option<Outcome> {
     let n = settings.search_vertices;
     let n_loose =
-        (LOOSE_PER_UNIT * start.length() / thickness(start).tau).min(4.0 * n as f64) as usize;
+        (LOOSE_PER_UNIT * start.length() / start.thickness().tau).min(4.0 * n as f64) as usize;
     let mut curve = start.clone();
     let mut n_factorisations = 0;
     if n_loose > n {
@@ -151,7 +150,7 @@ pub(super) fn tighten_loose(
         };
         let outcome = tighten_level(&start.resampled(n_loose).ok()?, &loose, stop)?;
         n_factorisations = outcome.n_factorisations;
-        curve = outcome.curve;
+        curve = outcome.curves;
     }
     let mut outcome = tighten_level(&curve.resampled(n).ok()?, &level(), stop)?;
     outcome.n_factorisations += n_factorisations;

@@ -4,10 +4,13 @@ use serde::{Deserialize, Serialize};
 use topo_core::{CpuClock, Interrupt, Polyline};
 
 use super::augmented::settle;
-use super::check::check_type;
+use super::origin::Tight;
+use super::shape::refined;
 use super::stop::Stop;
-use super::{TightKnot, refined};
-use crate::{KnotError, thickness, thickness_brute_force};
+use super::topology::{Topology, check_type};
+use super::{TightKnot, TightLink};
+use crate::KnotError;
+use crate::curves::Curves;
 
 /// Vertices per unit of ropelength of the loosened start.
 const COARSE: f64 = 4.0;
@@ -17,14 +20,14 @@ const LOOSENING: usize = 12;
 const ROUGH: f64 = 1e-3;
 const FINE: f64 = 2e-5;
 
-/// What the second method says of a tight knot.
+/// What the second method says of a tight knot, or of a link whose curves it holds as a list.
 ///
 /// # Validation
 /// `val_two_methods_agree_on_tight_knots`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct SecondOpinion {
-    /// The curve, scaled to thickness 1.
-    pub curve: Polyline,
+pub struct SecondOpinion<C = Polyline> {
+    /// The curve or the curves, scaled to thickness 1.
+    pub curve: C,
     /// Its length over its thickness, which is found by brute force, in units of the tube radius.
     pub length_over_radius: f64,
     /// Ropelength of the loosened curve that the method started from, in tube radii.
@@ -57,45 +60,107 @@ pub fn second_opinion_until(
     tight: &TightKnot,
     interrupt: &Interrupt,
 ) -> Result<SecondOpinion, KnotError> {
+    let kind = Topology::Knot(tight.certificate.invariants.clone());
+    let first = First {
+        name: &tight.name,
+        curves: tight.curve.clone().into(),
+        length_over_radius: tight.length_over_radius,
+        kind,
+    };
+    let cut_short = || tight.clone().interrupted();
+    Ok(opinion(&first, interrupt, cut_short)?.with(Curves::into_first))
+}
+
+/// As [`second_opinion`], of a link.
+///
+/// # Errors
+/// As [`second_opinion`].
+///
+/// # Validation
+/// `val_two_methods_agree_on_tight_links`
+pub fn second_opinion_of_link(
+    tight: &TightLink,
+) -> Result<SecondOpinion<Vec<Polyline>>, KnotError> {
+    second_opinion_of_link_until(tight, &Interrupt::new())
+}
+
+/// As [`second_opinion_of_link`], but stopped when `interrupt` requests it.
+///
+/// # Errors
+/// As [`second_opinion`], and [`KnotError::InterruptedLink`] with the curves of the first method.
+pub fn second_opinion_of_link_until(
+    tight: &TightLink,
+    interrupt: &Interrupt,
+) -> Result<SecondOpinion<Vec<Polyline>>, KnotError> {
+    let kind = Topology::Link(tight.certificate.invariants.clone());
+    let first = First {
+        name: &tight.name,
+        curves: tight.curves.clone().into(),
+        length_over_radius: tight.length_over_radius,
+        kind,
+    };
+    let cut_short = || tight.clone().interrupted();
+    Ok(opinion(&first, interrupt, cut_short)?.with(Curves::into_parts))
+}
+
+impl<A> SecondOpinion<A> {
+    /// The numbers alone.
+    pub fn without_curves(self) -> SecondOpinion<()> {
+        self.with(drop)
+    }
+
+    fn with<C>(self, change: impl FnOnce(A) -> C) -> SecondOpinion<C> {
+        SecondOpinion {
+            curve: change(self.curve),
+            length_over_radius: self.length_over_radius,
+            start_length_over_radius: self.start_length_over_radius,
+            converged: self.converged,
+            n_evaluations: self.n_evaluations,
+            cpu_seconds: self.cpu_seconds,
+        }
+    }
+}
+
+/// What the first method came to.
+struct First<'a> {
+    name: &'a str,
+    curves: Curves,
+    length_over_radius: f64,
+    kind: Topology,
+}
+
+fn opinion(
+    first: &First<'_>,
+    interrupt: &Interrupt,
+    cut_short: impl Fn() -> KnotError,
+) -> Result<SecondOpinion<Curves>, KnotError> {
     let stop = Stop::at(interrupt);
     let clock = CpuClock::start();
-    let n_fine = tight.curve.n_vertices();
+    let n_fine = first.curves.n_vertices();
     let failed = |n: usize| KnotError::NotTightened {
-        knot: tight.name.clone(),
+        knot: first.name.to_owned(),
         n_starts: 1,
         last: format!("the second method failed at {n} vertices"),
     };
-    let mut n = ((COARSE * tight.length_over_radius) as usize).clamp(16, n_fine);
-    let mut curve = tight.curve.resampled(n)?.smoothed(LOOSENING)?;
-    let kind = &tight.certificate.invariants;
-    check_type(
-        &tight.name,
-        &curve,
-        kind,
-        "loosening the start of the second method",
-    )?;
-    let start_length_over_radius = curve.length() / thickness(&curve).tau;
+    let check = |curves: &Curves, stage| check_type(first.name, curves, &first.kind, stage);
+    let mut n = ((COARSE * first.length_over_radius) as usize).clamp(16, n_fine);
+    let mut curves = first.curves.resampled(n)?.smoothed(LOOSENING)?;
+    check(&curves, "loosening the start of the second method")?;
+    let start_length_over_radius = curves.length() / curves.thickness().tau;
     let mut n_evaluations = 0;
     loop {
         let tolerance = if n == n_fine { FINE } else { ROUGH };
-        let settled = settle(&curve, tolerance, &stop).ok_or_else(|| failed(n))?;
+        let settled = settle(&curves, tolerance, &stop).ok_or_else(|| failed(n))?;
         if stop.asks() {
-            return Err(KnotError::Interrupted {
-                best: Box::new(tight.clone()),
-            });
+            return Err(cut_short());
         }
         n_evaluations += settled.n_evaluations;
-        check_type(
-            &tight.name,
-            &settled.curve,
-            kind,
-            "tightening by the second method",
-        )?;
-        curve = settled.curve;
+        check(&settled.curves, "tightening by the second method")?;
+        curves = settled.curves;
         if n == n_fine {
-            let curve = curve.scaled(1.0 / thickness_brute_force(&curve).tau)?;
+            let curve = curves.scaled(1.0 / curves.thickness_brute_force().tau)?;
             return Ok(SecondOpinion {
-                length_over_radius: curve.length() / thickness_brute_force(&curve).tau,
+                length_over_radius: curve.length() / curve.thickness_brute_force().tau,
                 curve,
                 start_length_over_radius,
                 converged: settled.converged,
@@ -104,6 +169,6 @@ pub fn second_opinion_until(
             });
         }
         n = if 3 * n > 2 * n_fine { n_fine } else { 2 * n };
-        curve = refined(&curve, n)?;
+        curves = refined(&curves, n)?;
     }
 }

@@ -4,7 +4,7 @@ use std::cell::Cell;
 
 use topo_core::Interrupt;
 
-use super::TightKnot;
+use super::origin::Tight;
 use crate::KnotError;
 
 /// An interrupt, and whether work was left undone because of it.
@@ -31,24 +31,21 @@ impl Stop {
         self.is_heeded.get()
     }
 
-    /// The knot, if nothing was left undone.
-    pub(super) fn unless_cut_short(&self, tight: TightKnot) -> Result<TightKnot, KnotError> {
-        if self.is_heeded.get() {
-            return Err(KnotError::Interrupted {
-                best: Box::new(tight),
-            });
+    /// The knot or link, if nothing was left undone.
+    pub(super) fn unless_cut_short<T: Tight>(&self, tight: T) -> Result<T, KnotError> {
+        match self.is_heeded.get() {
+            true => Err(tight.interrupted()),
+            false => Ok(tight),
         }
-        Ok(tight)
     }
 }
 
-/// What is made of the knot itself, for its mirror image.
-pub(crate) fn mirrored(made: Result<TightKnot, KnotError>) -> Result<TightKnot, KnotError> {
+/// What is made of the knot or link itself, for its mirror image.
+pub(crate) fn mirrored<T: Tight>(made: Result<T, KnotError>) -> Result<T, KnotError> {
     match made {
-        Ok(tight) => Ok(tight.mirror()),
-        Err(KnotError::Interrupted { best }) => Err(KnotError::Interrupted {
-            best: Box::new(best.mirror()),
-        }),
+        Ok(tight) => Ok(tight.mirrored()),
+        Err(KnotError::Interrupted { best }) => Err(best.mirror().interrupted()),
+        Err(KnotError::InterruptedLink { best }) => Err(best.mirror().interrupted()),
         Err(error) => Err(error),
     }
 }

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use rayon::prelude::*;
 
 use super::*;
-use crate::{KnotTable, V, thickness_brute_force};
+use crate::{KnotTable, V, closed_braid, thickness_brute_force};
 
 /// Writhe of ideal shapes, in absolute value.
 const WRITHE: [(&str, f64); 8] = [

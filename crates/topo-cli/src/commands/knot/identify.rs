@@ -8,12 +8,12 @@ use crate::cli::IdentifyArgs;
 use crate::error::CliError;
 use crate::output;
 use crate::progress::waiting;
-use report::{Component, Finding, Frame, Report};
+use report::{Component, Finding, Frame, LinkFinding, Report};
 use std::fmt::Write as _;
 use std::process::ExitCode;
 use topo_knots::{
-    CurveComponent, CurveFile, CurveFrame, FrameChoice, Handedness, KnotError, KnotTable, identify,
-    identify_open,
+    CurveComponent, CurveFile, CurveFrame, FrameChoice, Handedness, KnotError, KnotTable,
+    LinkTable, LinkType, V, identify, identify_link, identify_open,
 };
 
 /// Exit code where several types fit, or one that is not proved.
@@ -52,14 +52,22 @@ fn look(args: &IdentifyArgs, table: &KnotTable) -> Result<(Report, String), CliE
     if let Some(frame) = &file.frame {
         warnings.insert(0, frame_note(frame, args.frame.is_none()));
     }
-    if several {
-        let link = format!(
-            "a link of {} components; how they are linked is not found, each is named by itself",
-            file.components.len()
-        );
+    let link = match several {
+        true => look_at_link(args, &file.components)?,
+        false => None,
+    };
+    match &link {
         // Writing to a string cannot fail.
-        let _ = writeln!(text, "{link}");
-        warnings.push(link);
+        Some(found) => drop(writeln!(text, "{}", link_text(found))),
+        None if several => {
+            let note = format!(
+                "{} components, some of them open: how they are linked is not found, each is named by itself",
+                file.components.len()
+            );
+            let _ = writeln!(text, "{note}");
+            warnings.push(note);
+        }
+        None => {}
     }
     let mut components = Vec::new();
     for (k, component) in file.components.iter().enumerate() {
@@ -90,16 +98,51 @@ fn look(args: &IdentifyArgs, table: &KnotTable) -> Result<(Report, String), CliE
     }
     let finding = match &components[..] {
         [only] => only.finding.clone(),
-        several => Finding::link(several),
+        several => Finding::link(several, link.as_ref()),
     };
     let report = Report {
         file: args.file.display().to_string(),
         frame: file.frame.as_ref().map(Frame::from),
         finding,
+        link: link.as_ref().map(LinkFinding::from),
         components,
         warnings,
     };
     Ok((report, text))
+}
+
+/// The link of several components, if all of them are closed.
+fn look_at_link(
+    args: &IdentifyArgs,
+    components: &[CurveComponent],
+) -> Result<Option<LinkType>, CliError> {
+    if !components
+        .iter()
+        .all(|component| is_closed(args, component).0)
+    {
+        return Ok(None);
+    }
+    let parts: Vec<&[V]> = components.iter().map(|c| c.vertices.as_slice()).collect();
+    let found = identify_link(&parts, LinkTable::builtin());
+    let named = |e: KnotError| CliError::Input(format!("{}: {e}", args.file.display()));
+    found.map(Some).map_err(named)
+}
+
+fn link_text(found: &LinkType) -> String {
+    let linking: Vec<String> = found
+        .invariants
+        .linking
+        .iter()
+        .map(i32::to_string)
+        .collect();
+    let jones = found.invariants.oriented_jones();
+    format!(
+        "{}\n  {} crossings in the simplest diagram found; linking numbers {}, Jones polynomial {}",
+        found.describe(),
+        found.n_crossings(),
+        linking.join(" "),
+        jones.map_or_else(|| "not computed".to_owned(), |jones| jones.text())
+    )
 }
 
 fn frame_note(frame: &CurveFrame, by_default: bool) -> String {

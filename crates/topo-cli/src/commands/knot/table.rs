@@ -1,6 +1,6 @@
 //! The table that `cargo xtask knot tighten` leaves beside the curves.
 
-use topo_knots::{KnotEntry, TightKnot};
+use super::subject::{Facts, Subject};
 
 const HEAD: &str = "| knot | L/r | published | excess (%) | writhe | struts | kinks | residual | CPU s |\n|---|---|---|---|---|---|---|---|---|\n";
 
@@ -13,12 +13,12 @@ pub(super) struct Row {
 }
 
 impl Row {
-    pub(super) fn new(entry: &KnotEntry, tight: &TightKnot, sentence: String) -> Self {
+    pub(super) fn new(subject: &Subject, tight: &Facts<'_>, sentence: String) -> Self {
         let length = tight.length_over_radius;
-        let excess = excess(entry, tight);
-        let certificate = &tight.certificate;
+        let (published, _) = subject.published();
+        let excess = excess(published, length);
         let missing = || "missing".to_owned();
-        let mark = if certificate.converged {
+        let mark = if tight.converged {
             ""
         } else {
             " (not converged)"
@@ -26,14 +26,12 @@ impl Row {
         let line = format!(
             "| {} | {length:.4}{mark} | {} | {} | {:+.3} | {} | {} | {:.4} | {:.1} |\n",
             tight.name,
-            entry
-                .length_over_radius
-                .map_or_else(missing, |l| format!("{l:.4}")),
+            published.map_or_else(missing, |l| format!("{l:.4}")),
             excess.map_or_else(missing, |e| format!("{e:+.3}")),
-            certificate.writhe,
-            certificate.n_struts,
-            certificate.n_kinks,
-            certificate.residual,
+            tight.writhe,
+            tight.n_struts,
+            tight.n_kinks,
+            tight.residual,
             tight.cpu_seconds
         );
         Self {
@@ -45,10 +43,8 @@ impl Row {
 }
 
 /// Length over the published one, in percent above it.
-pub(super) fn excess(entry: &KnotEntry, tight: &TightKnot) -> Option<f64> {
-    entry
-        .length_over_radius
-        .map(|l| 100.0 * (tight.length_over_radius / l - 1.0))
+pub(super) fn excess(published: Option<f64>, length: f64) -> Option<f64> {
+    published.map(|l| 100.0 * (length / l - 1.0))
 }
 
 /// The table in Markdown, with the median and the largest excess below.
@@ -69,6 +65,7 @@ pub(super) fn markdown(rows: &[Row]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::commands::knot::subject::Tight;
     use topo_knots::{KnotTable, TightenSettings, tighten_entry};
 
     #[test]
@@ -86,7 +83,9 @@ mod tests {
         let tight = tighten_entry(knot, &settings).unwrap();
         let mut unpublished = knot.clone();
         unpublished.length_over_radius = None;
-        let rows = [knot, &unpublished].map(|k| Row::new(k, &tight, String::new()));
+        let tight = Tight::Knot(Box::new(tight));
+        let rows =
+            [knot.clone(), unpublished].map(|k| Row::new(&k.into(), &tight.facts(), String::new()));
         let text = markdown(&rows);
         let lines: Vec<&str> = text.lines().collect();
         assert!(lines[2].starts_with("| 3_1 | 3") && lines[2].contains("| 32.7436 | +"));

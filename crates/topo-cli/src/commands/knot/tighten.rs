@@ -1,5 +1,6 @@
 //! `topo knot tighten`: tight shapes with their certificates.
 
+use super::subject::{Subject, Tight};
 use super::table::{self, Row};
 use crate::cli::TightenArgs;
 use crate::error::CliError;
@@ -10,8 +11,8 @@ use serde_json::json;
 use std::path::Path;
 use topo_core::{Interrupt, write_atomic_bytes};
 use topo_knots::{
-    KnotEntry, KnotError, KnotTable, SecondOpinion, TightKnot, TightenSettings, ideal_until,
-    parse_braid, read_curve, second_opinion_until, tighten_by_hops_until, write_curve,
+    CurveComponent, KnotEntry, KnotError, KnotTable, LinkEntry, LinkTable, SecondOpinion,
+    TightenSettings, n_components, parse_braid, read_components, write_curves,
 };
 
 pub(super) fn run(args: &TightenArgs, knots: &KnotTable) -> Result<(), CliError> {
@@ -28,23 +29,20 @@ pub(super) fn run(args: &TightenArgs, knots: &KnotTable) -> Result<(), CliError>
             source,
         })?;
     }
-    let one = |entry: &KnotEntry| -> Result<Option<Row>, CliError> {
+    let one = |subject: &Subject| -> Result<Option<Row>, CliError> {
         if stop.is_requested() {
             return Ok(None);
         }
-        let made = match args.hops {
-            0 => ideal_until(entry, &settings, Some(&cache), &stop),
-            n => tighten_by_hops_until(entry, n, &settings, &stop),
-        };
-        let (tight, is_whole) = match made {
-            Err(KnotError::Interrupted { best }) => (*best, false),
-            made => (made?, true),
-        };
+        let (tight, is_whole) = subject.tighten(args.hops, &settings, &cache, &stop)?;
         if !is_whole && is_beaten(&tight, folder) {
-            note!("{}: the shorter curve of an earlier run stays", tight.name);
+            note!(
+                "{}: the shorter curve of an earlier run stays",
+                tight.facts().name
+            );
             return Ok(None);
         }
-        let row = Row::new(entry, &tight, write(entry, &tight, args, folder, &stop)?);
+        let sentence = write(subject, &tight, args, folder, &stop)?;
+        let row = Row::new(subject, &tight.facts(), sentence);
         say!("{}", row.sentence);
         Ok(Some(row))
     };
@@ -62,7 +60,8 @@ pub(super) fn run(args: &TightenArgs, knots: &KnotTable) -> Result<(), CliError>
 }
 
 /// Whether an earlier run has left a shorter curve: one that was cut short does not take its place.
-fn is_beaten(tight: &TightKnot, folder: &Path) -> bool {
+fn is_beaten(tight: &Tight, folder: &Path) -> bool {
+    let tight = tight.facts();
     let path = folder.join(format!("{}.json", tight.name));
     let text = std::fs::read_to_string(path).unwrap_or_default();
     let earlier: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
@@ -71,26 +70,59 @@ fn is_beaten(tight: &TightKnot, folder: &Path) -> bool {
         .is_some_and(|length| length < tight.length_over_radius)
 }
 
-/// The knots that the arguments ask for.
-fn entries(args: &TightenArgs, table: &KnotTable) -> Result<Vec<KnotEntry>, CliError> {
+/// The knots and links that the arguments ask for.
+fn entries(args: &TightenArgs, table: &KnotTable) -> Result<Vec<Subject>, CliError> {
+    let links = LinkTable::builtin();
     if let Some(word) = &args.braid {
-        return Ok(vec![KnotEntry::of_braid(&letters(word)?, table)?]);
+        let word = letters(word)?;
+        return Ok(vec![match n_components(&word)? {
+            1 => KnotEntry::of_braid(&word, table)?.into(),
+            _ => LinkEntry::of_braid(&word, links)?.into(),
+        }]);
     }
     if let Some(path) = &args.curve {
-        let component = read_curve(path)?;
-        if component.closed == Some(false) {
-            return Err(CliError::Input(format!(
-                "{}: the curve is open; only closed curves can be tightened",
-                path.display()
-            )));
-        }
-        return Ok(vec![KnotEntry::of_curve(&component.vertices, table)?]);
+        let of_file = |e: KnotError| CliError::Input(format!("{}: {e}", path.display()));
+        let components = read_components(path)?;
+        return Ok(vec![match &components[..] {
+            [only] => of_curve(path, only, table)?,
+            several => of_curves(several).map_err(of_file)?,
+        }]);
     }
     if args.names == ["all"] {
-        return Ok(table.iter().cloned().collect());
+        return Ok(table.iter().cloned().map(Subject::from).collect());
     }
-    let entry = |name: &String| Ok(table.get(name)?.into_owned());
-    args.names.iter().map(entry).collect()
+    if args.links == ["all"] {
+        return Ok(links.iter().cloned().map(Subject::from).collect());
+    }
+    let knot = |name: &String| Ok(table.get(name)?.into_owned().into());
+    let link = |name: &String| Ok(links.get(name)?.into_owned().into());
+    let knots = args.names.iter().map(knot);
+    knots.chain(args.links.iter().map(link)).collect()
+}
+
+fn of_curve(
+    path: &Path,
+    component: &CurveComponent,
+    table: &KnotTable,
+) -> Result<Subject, CliError> {
+    if component.closed == Some(false) {
+        return Err(CliError::Input(format!(
+            "{}: the curve is open; only closed curves can be tightened",
+            path.display()
+        )));
+    }
+    Ok(KnotEntry::of_curve(&component.vertices, table)?.into())
+}
+
+fn of_curves(components: &[CurveComponent]) -> Result<Subject, KnotError> {
+    if let Some(k) = components.iter().position(|c| !c.is_closed()) {
+        return Err(KnotError::OpenComponent {
+            component: k + 1,
+            gap: components[k].gap_over_longest_edge(),
+        });
+    }
+    let vertices: Vec<_> = components.iter().map(|c| c.vertices.clone()).collect();
+    Ok(LinkEntry::of_curves(&vertices, LinkTable::builtin())?.into())
 }
 
 fn letters(word: &str) -> Result<Vec<i32>, CliError> {
@@ -111,23 +143,23 @@ fn settings(args: &TightenArgs) -> TightenSettings {
 
 /// The second method's opinion, where it is asked for; none when interrupted.
 fn second(
-    tight: &TightKnot,
+    tight: &Tight,
     args: &TightenArgs,
     stop: &Interrupt,
-) -> Result<Option<SecondOpinion>, CliError> {
+) -> Result<Option<SecondOpinion<()>>, CliError> {
     if !args.check || stop.is_requested() {
         return Ok(None);
     }
-    match second_opinion_until(tight, stop) {
-        Err(KnotError::Interrupted { .. }) => Ok(None),
+    match tight.second(stop) {
+        Err(KnotError::Interrupted { .. } | KnotError::InterruptedLink { .. }) => Ok(None),
         second => Ok(Some(second?)),
     }
 }
 
-/// Writes curve and certificate; returns a line of numbers.
+/// Writes curves and certificate; returns a line of numbers.
 fn write(
-    entry: &KnotEntry,
-    tight: &TightKnot,
+    subject: &Subject,
+    tight: &Tight,
     args: &TightenArgs,
     folder: &Path,
     stop: &Interrupt,
@@ -136,41 +168,42 @@ fn write(
         path: folder.to_owned(),
         source,
     })?;
-    let path = |extension: &str| folder.join(format!("{}.{extension}", tight.name));
-    write_curve(&path(&args.format), &tight.curve)?;
-    let length = tight.length_over_radius;
-    let excess = table::excess(entry, tight);
-    let certificate = &tight.certificate;
+    let facts = tight.facts();
+    let path = |extension: &str| folder.join(format!("{}.{extension}", facts.name));
+    write_curves(&path(&args.format), facts.curves)?;
+    let length = facts.length_over_radius;
+    let (published, source) = subject.published();
+    let [list, key] = subject.keys();
     let second = second(tight, args, stop)?;
     let apart = second.as_ref().map(|s| s.length_over_radius / length - 1.0);
-    let record = json!({
-        "knot": tight.name, "vertices": tight.curve.n_vertices(), "length_over_radius": length,
-        "published": entry.length_over_radius, "source": entry.source, "excess_percent": excess,
-        "certificate": certificate, "cpu_seconds": tight.cpu_seconds, "factorisations": tight.n_factorisations,
+    let sizes: Vec<usize> = facts.curves.iter().map(|c| c.n_vertices()).collect();
+    let n_vertices: usize = sizes.iter().sum();
+    let certificate = tight
+        .certificate()
+        .map_err(|e| CliError::Step(e.to_string()))?;
+    let mut record = json!({
+        key: facts.name, "vertices": n_vertices, "length_over_radius": length,
+        "published": published, "source": source, "excess_percent": table::excess(published, length),
+        "certificate": certificate, "cpu_seconds": facts.cpu_seconds, "factorisations": facts.n_factorisations,
         "second_method": second.as_ref().map(|s| json!({
             "length_over_radius": s.length_over_radius, "relative_difference": apart, "converged": s.converged,
             "start_length_over_radius": s.start_length_over_radius, "evaluations": s.n_evaluations, "cpu_seconds": s.cpu_seconds,
         })),
     });
+    if sizes.len() > 1 {
+        record["vertices_of_components"] = json!(sizes);
+    }
     let text = format!("{record:#}\n");
-    output::one_more("knots", &record);
+    output::one_more(list, &record);
     write_atomic_bytes(&path("json"), text.as_bytes()).map_err(KnotError::from)?;
-    let mut line = format!(
-        "{:8} {:5} vertices  L/r {length:9.4}",
-        tight.name,
-        tight.curve.n_vertices()
-    );
-    line += &match (entry.length_over_radius, excess) {
+    let mut line = format!("{:8} {n_vertices:5} vertices  L/r {length:9.4}", facts.name);
+    line += &match (published, table::excess(published, length)) {
         (Some(published), Some(excess)) => format!("  published {published:9.4} ({excess:+.4} %)"),
         _ => "  published   missing           ".to_owned(),
     };
     line += &format!(
         "  Wr {:+.4}  struts {:5}  kinks {:2}  residual {:.4}  {:5.1} CPU s",
-        certificate.writhe,
-        certificate.n_struts,
-        certificate.n_kinks,
-        certificate.residual,
-        tight.cpu_seconds
+        facts.writhe, facts.n_struts, facts.n_kinks, facts.residual, facts.cpu_seconds
     );
     if let (Some(second), Some(apart)) = (&second, apart) {
         line += &format!(
@@ -178,20 +211,26 @@ fn write(
             second.length_over_radius
         );
     }
-    if !certificate.converged && stop.is_requested() {
-        line += "  INTERRUPTED: the best curve so far is kept";
-        output::warning(format!(
-            "{}: interrupted, the best curve so far is kept",
-            tight.name
-        ));
-    } else if !certificate.converged {
-        line += "  NOT CONVERGED: the best curve is kept";
-        output::warning(format!(
-            "{}: not converged, the best curve is kept",
-            tight.name
-        ));
+    if !facts.converged {
+        line += &mark(facts.name, stop);
     }
     Ok(line)
+}
+
+/// Why the best curve is not the last word, with a warning.
+fn mark(name: &str, stop: &Interrupt) -> String {
+    let (loud, quiet) = match stop.is_requested() {
+        true => (
+            "INTERRUPTED: the best curve so far is kept",
+            "interrupted, the best curve so far is kept",
+        ),
+        false => (
+            "NOT CONVERGED: the best curve is kept",
+            "not converged, the best curve is kept",
+        ),
+    };
+    output::warning(format!("{name}: {quiet}"));
+    format!("  {loud}")
 }
 
 #[cfg(test)]
@@ -204,5 +243,28 @@ mod tests {
         assert_eq!(letters("[1, 1, 1]").unwrap(), [1, 1, 1]);
         let error = letters("1 -2 a").unwrap_err();
         assert!(error.to_string().contains("`a`") && error.exit_code() == 2);
+    }
+
+    #[test]
+    fn open_components_are_refused() {
+        let component = |n: usize, closed| CurveComponent {
+            vertices: (0..n).map(|k| topo_knots::V::x() * k as f64).collect(),
+            closed,
+            repeats_first: false,
+        };
+        let refused = |components: &[CurveComponent]| match of_curves(components) {
+            Ok(_) => String::new(),
+            Err(error) => error.to_string(),
+        };
+        let open = refused(&[component(9, Some(true)), component(9, None)]);
+        assert!(
+            open.contains("component 2 is open: its ends are 8.000 times"),
+            "{open}"
+        );
+        let short = refused(&[component(2, Some(true)), component(9, Some(true))]);
+        assert!(
+            short.contains("component 1: ") && short.contains("at least 3"),
+            "{short}"
+        );
     }
 }

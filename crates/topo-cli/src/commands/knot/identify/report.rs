@@ -1,7 +1,7 @@
 //! What `knot identify` finds, in the form that `--json` writes; docs/output.md explains each key.
 
 use serde::Serialize;
-use topo_knots::{CurveFrame, Handedness, KnotName, KnotType, OpenKnotType};
+use topo_knots::{CurveFrame, Handedness, KnotName, KnotType, LinkJones, LinkType, OpenKnotType};
 
 /// What a file holds.
 #[derive(Debug, Serialize)]
@@ -10,9 +10,12 @@ pub(super) struct Report {
     pub file: String,
     /// The frame that was named, if the file holds several.
     pub frame: Option<Frame>,
-    /// The finding for the only component; without a name if there are several.
+    /// The finding for the only component, or for the link of several.
     #[serde(flatten)]
     pub finding: Finding,
+    /// How several closed components are linked.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub link: Option<LinkFinding>,
     /// A finding for each component.
     pub components: Vec<Component>,
     /// How the file was taken, and what the finding does not tell.
@@ -33,6 +36,46 @@ impl From<&CurveFrame> for Frame {
             number: frame.number,
             of: frame.n_frames,
             label: frame.label.clone(),
+        }
+    }
+}
+
+/// How components are linked.
+#[derive(Debug, Serialize)]
+pub(super) struct LinkFinding {
+    /// Whether it falls into parts that can be moved apart.
+    pub split: bool,
+    /// Linking number of each component with each other, oriented as in the file.
+    pub linking_numbers: Vec<Vec<i32>>,
+    /// Each part by itself.
+    pub parts: Vec<Part>,
+}
+
+/// A part of a link.
+#[derive(Debug, Serialize)]
+pub(super) struct Part {
+    /// Numbers of its components, from 1.
+    pub components: Vec<usize>,
+    /// Names that fit.
+    pub candidates: Vec<String>,
+    pub certain: bool,
+    pub crossings: usize,
+}
+
+impl From<&LinkType> for LinkFinding {
+    fn from(found: &LinkType) -> Self {
+        let n = found.components.len();
+        let row = |a: usize| (0..n).map(move |b| found.invariants.linking_number(a, b));
+        let part = |part: &topo_knots::LinkPart| Part {
+            components: part.components.iter().map(|k| k + 1).collect(),
+            candidates: part.candidates.clone(),
+            certain: part.certain,
+            crossings: part.n_crossings,
+        };
+        Self {
+            split: found.is_split(),
+            linking_numbers: (0..n).map(|a| row(a).collect()).collect(),
+            parts: found.parts.iter().map(part).collect(),
         }
     }
 }
@@ -130,10 +173,30 @@ impl Finding {
         }
     }
 
-    /// What is known of several components together: nothing but whether each is certain.
-    pub(super) fn link(components: &[Component]) -> Self {
+    /// What is known of several components together; of open ones nothing but whether each is certain.
+    pub(super) fn link(components: &[Component], link: Option<&LinkType>) -> Self {
+        let Some(found) = link else {
+            return Self {
+                certain: components.iter().all(|c| c.finding.certain),
+                ..Self::default()
+            };
+        };
+        let has_one_name = found.parts.iter().all(|part| part.candidates.len() == 1);
+        let candidates = match &found.parts[..] {
+            [part] => part.candidates.clone(),
+            _ => Vec::from_iter(has_one_name.then(|| found.label())),
+        };
         Self {
-            certain: components.iter().all(|c| c.finding.certain),
+            name: has_one_name.then(|| found.label()),
+            candidates,
+            certain: found.is_certain(),
+            certain_to: Some(LinkType::CERTAIN_TO),
+            crossings: Some(found.n_crossings()),
+            jones: found
+                .invariants
+                .oriented_jones()
+                .as_ref()
+                .map(LinkJones::text),
             ..Self::default()
         }
     }

@@ -1,6 +1,6 @@
 use super::*;
 use std::path::{Path, PathBuf};
-use topo_knots::{closed_braid, write_curve};
+use topo_knots::{braid_closure, closed_braid, write_curve, write_curves};
 
 fn args(file: PathBuf) -> IdentifyArgs {
     IdentifyArgs {
@@ -59,14 +59,30 @@ fn files_are_named() {
     );
     let (json, text, code) = named(&args);
     assert!(
-        text.contains("a link of 2 components") && text.contains("component 2: 0_1"),
+        text.starts_with("a split link of 2 components; component 1: 0_1 (certain)")
+            && text.contains("component 2: 0_1"),
         "{text}"
     );
     assert_eq!(
         (&json["name"], code),
-        (&serde_json::Value::Null, ExitCode::SUCCESS)
+        (&"0_1+0_1".into(), ExitCode::SUCCESS)
     );
     assert_eq!(json["components"][1]["name"], "0_1");
+    assert_eq!(
+        (&json["link"]["split"], &json["certain"]),
+        (&true.into(), &true.into())
+    );
+    args.open = true;
+    let (json, text, _) = named(&args);
+    assert!(
+        text.contains("2 components, some of them open: how they are linked is not found"),
+        "{text}"
+    );
+    assert_eq!(
+        (&json["name"], &json["link"]),
+        (&serde_json::Value::Null, &serde_json::Value::Null)
+    );
+    args.open = false;
     args.file = write(folder.path(), "nan.xyz", "0 0 0\n0 nan 0\n");
     let error = look(&args, &KnotTable::builtin()).unwrap_err();
     assert!(
@@ -156,6 +172,46 @@ fn frames_are_named_with_their_times() {
             .unwrap_err()
             .to_string()
             .contains("no frame 9")
+    );
+}
+
+#[test]
+fn links_are_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("solomon.vect");
+    write_curves(&path, &braid_closure(&[-1; 4]).unwrap()).unwrap();
+    let (json, text, code) = named(&args(path.clone()));
+    assert!(
+        text.starts_with("mL4a1 (certain), a link of 2 components\n  4 crossings"),
+        "{text}"
+    );
+    assert!(
+        text.contains("linking numbers -2,") && text.contains("component 2: 0_1, the unknot"),
+        "{text}"
+    );
+    assert_eq!((&json["name"], code), (&"mL4a1".into(), ExitCode::SUCCESS));
+    let link = serde_json::json!({
+        "split": false,
+        "linking_numbers": [[0, -2], [-2, 0]],
+        "parts": [{"components": [1, 2], "candidates": ["mL4a1"], "certain": true, "crossings": 4}],
+    });
+    assert_eq!(json["link"], link);
+    // More crossings than those up to which all links are compared.
+    write_curves(&path, &braid_closure(&[1, 1, 2, 2, 3, 3, 4, 4]).unwrap()).unwrap();
+    let (json, text, code) = named(&args(path.clone()));
+    assert!(
+        text.starts_with("consistent with chain(5), a link"),
+        "{text}"
+    );
+    assert_eq!((&json["certain"], code), (&false.into(), ExitCode::from(3)));
+    let ring = braid_closure(&[1, 1]).unwrap().swap_remove(0);
+    write_curves(&path, &[ring.clone(), ring]).unwrap();
+    let error = look(&args(path), &KnotTable::builtin())
+        .unwrap_err()
+        .to_string();
+    assert!(
+        error.contains("solomon.vect: components 1 and 2 coincide"),
+        "{error}"
     );
 }
 

@@ -1,0 +1,12 @@
+//! Links: their table, their invariants, and their names from coordinates.
+
+mod entry;
+mod file;
+mod identify;
+mod invariants;
+mod table;
+
+pub use entry::LinkEntry;
+pub use identify::{LinkPart, LinkType, identify_link};
+pub use invariants::{LinkInvariants, LinkJones};
+pub use table::LinkTable;
