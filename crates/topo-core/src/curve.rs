@@ -10,6 +10,7 @@ mod writhe;
 pub use polyline::Polyline;
 pub use segment::closest_points;
 pub use thickness::{
-    Thickness, thickness, thickness_brute_force, vertex_radius, windowed_half_distance,
+    Thickness, link_thickness, thickness, thickness_brute_force, vertex_radius,
+    windowed_half_distance,
 };
-pub use writhe::{average_crossing_number, writhe};
+pub use writhe::{average_crossing_number, linking, writhe};

@@ -41,8 +41,8 @@ pub use checkpoint::{
 pub use control::{Rejection, RejectionCounts, StepControl};
 pub use cpu::CpuClock;
 pub use curve::{
-    Polyline, Thickness, average_crossing_number, closest_points, thickness, thickness_brute_force,
-    vertex_radius, windowed_half_distance, writhe,
+    Polyline, Thickness, average_crossing_number, closest_points, link_thickness, linking,
+    thickness, thickness_brute_force, vertex_radius, windowed_half_distance, writhe,
 };
 pub use discharge::{DischargeCurve, DischargeError};
 pub use error::CurveError;

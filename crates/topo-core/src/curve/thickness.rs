@@ -64,6 +64,46 @@ pub fn thickness_brute_force(curve: &Polyline) -> Thickness {
     Thickness::new(min_rad(curve), self_distance(curve, false))
 }
 
+/// Thickness of several polygons together: the radius of the thickest tubes around all of them that overlap nowhere.
+///
+/// Any two points of different polygons are strands of their own, so that the least distance between two of them bounds the thickness
+/// as a self-distance does. Of one polygon it is [`thickness`]; of none it is infinite.
+///
+/// # Validation
+/// `val_thickness_of_chained_and_of_apart_rings`
+pub fn link_thickness(curves: &[Polyline]) -> Thickness {
+    let mut all = Thickness::new(f64::INFINITY, f64::INFINITY);
+    for (k, curve) in curves.iter().enumerate() {
+        let own = thickness(curve);
+        all = Thickness::new(all.min_rad.min(own.min_rad), all.dcsd.min(own.dcsd));
+        for other in &curves[k + 1..] {
+            all = Thickness::new(all.min_rad, distance_below(curve, other, all.dcsd));
+        }
+    }
+    all
+}
+
+/// The least distance between two polygons, or `least` if that is smaller.
+fn distance_below(a: &Polyline, b: &Polyline, mut least: f64) -> f64 {
+    let (x, y) = (a.vertices(), b.vertices());
+    let middles = |curve: &Polyline| -> Vec<(V, f64)> {
+        let of = |i| 0.5 * (curve.vertices()[i] + head(curve.vertices(), i));
+        let edges = 0..curve.n_edges();
+        edges.map(|i| (of(i), 0.5 * curve.edge(i).norm())).collect()
+    };
+    let (first, second) = (middles(a), middles(b));
+    for (i, (p, half)) in first.iter().enumerate() {
+        for (j, (q, other)) in second.iter().enumerate() {
+            let reach = least + half + other;
+            if (p - q).norm_squared() <= reach * reach {
+                let square = closest_points(&x[i], head(x, i), &y[j], head(y, j)).0;
+                least = least.min(square.sqrt());
+            }
+        }
+    }
+    least
+}
+
 /// Half the smallest distance between points at least π `radius` apart along the curve, another usual definition of the
 /// self-distance: it reaches `radius` exactly when a tube of that radius does not overlap itself.
 pub fn windowed_half_distance(curve: &Polyline, radius: f64) -> f64 {
@@ -183,6 +223,29 @@ mod tests {
         assert!((found.dcsd - 2.0 * inscribed).abs() < 1e-6, "{found:?}");
         let ropelength = circle(800, 7.0).ropelength();
         assert!((ropelength / std::f64::consts::TAU - 1.0).abs() < 1e-5);
+    }
+
+    /// Rings of radius 2 chained at a right angle so that each runs through the middle of the other: thickness 1, ropelength 8π of
+    /// both; apart they are bounded by their own radius or by half their distance.
+    #[test]
+    fn val_thickness_of_chained_and_of_apart_rings() {
+        let flat = circle(800, 2.0);
+        let upright = |shift: f64| {
+            let turned = flat
+                .vertices()
+                .iter()
+                .map(|v| V::new(v.x + shift, 0.0, v.y));
+            Polyline::new(turned.collect(), true).expect("a circle")
+        };
+        for (shift, expected) in [(2.0, 1.0), (5.0, 0.5), (40.0, 2.0), (1.0, 0.5)] {
+            let found = link_thickness(&[flat.clone(), upright(shift)]);
+            assert!((found.tau - expected).abs() < 1e-4, "{shift}: {found:?}");
+        }
+        assert_eq!(
+            link_thickness(std::slice::from_ref(&flat)),
+            thickness(&flat)
+        );
+        assert!(link_thickness(&[]).tau.is_infinite());
     }
 
     #[test]
