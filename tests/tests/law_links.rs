@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use topo_core::{Polyline, RunHooks};
 use topo_rod::{
     Accuracy, ChargeSettings, ChargedRod, ContactParameters, CutSite, DischargeSettings,
-    FrictionParameters, Guards, RodBattery, RodParameters, RodState,
+    EndCondition, EndMotion, Ends, FrictionParameters, Guards, RodBattery, RodParameters, RodState,
 };
 use topo_tests::{curves, run};
 
@@ -134,6 +134,53 @@ fn law_components_out_of_reach_move_as_each_alone() {
     assert!(run::stored(&alone, "bend") < 0.9 * run::stored(&setup.simulation(near), "bend"));
 }
 
+/// The ends of a component are held, moved and loaded as if it were alone, wherever in a link it stands; the work is the same.
+#[test]
+fn law_ends_of_a_component_are_those_of_it_alone() {
+    let held = Ends {
+        conditions: [EndCondition::Clamped, EndCondition::Pinned],
+        motions: [
+            EndMotion {
+                rotation_rate: 0.03,
+                ..EndMotion::default()
+            },
+            EndMotion {
+                velocity: [-0.02, 0.01, 0.02],
+                torque: 0.01,
+                ..EndMotion::default()
+            },
+        ],
+    };
+    let setup = run::Setup::bare(1e-5).with_twist().with_ends(held);
+    let bent = curves::from_tangents(40, 0.5, |j| {
+        let angle = 0.02 * j as f64;
+        V::new(angle.cos(), angle.sin(), 0.0)
+    });
+    let rod = RodState::new(&bent, 20.0, 0.1).unwrap();
+    // at rest but for its drag, of which a ring without a net force has none
+    let circle = ring(60, 4.0, V::z() * 30.0, V::y(), V::zeros());
+    let ring = RodState::new(&circle, circle.length(), 0.0).unwrap();
+    let mut alone = setup.simulation(rod.clone());
+    run::run_to(&mut alone, 20.0);
+    for (place, parts) in [(0, [&rod, &ring]), (1, [&ring, &rod])] {
+        let state = RodState::link(parts).unwrap();
+        let mut link = setup.simulation(state.clone());
+        run::run_to(&mut link, 20.0);
+        let taken = link.state().component(place).unwrap();
+        let pairs = taken.vertices().iter().zip(alone.state().vertices());
+        let apart = pairs.map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+        let works = [&alone, &link].map(|s| s.model().account().work());
+        println!("{place}: {apart:.1e}, work {works:?}");
+        assert!(apart < 1e-4, "{place}: {apart:.1e}");
+        assert!(
+            (works[1] / works[0] - 1.0).abs() < 1e-3 && works[0].abs() > 1e-3,
+            "{works:?}"
+        );
+        let twists = [&taken, alone.state()].map(RodState::total_twist);
+        assert!((twists[0] - twists[1]).abs() < 1e-5, "{twists:?}");
+    }
+}
+
 /// The order in which components are given changes nothing but the order of the results.
 #[test]
 fn law_components_may_be_given_in_any_order() {
@@ -229,7 +276,7 @@ fn law_a_cut_component_slips_out_of_its_link() {
     assert!(left.abs() < 0.1 && gap > 1.5, "{left} {gap}");
 }
 
-/// Further components take no byte and no solve of a rod that has none, and are told by their counters.
+/// Further components take no byte and no solve of a rod that has none, and their counters say where they are.
 #[test]
 fn law_absent_components_cost_nothing() {
     let [a, b] = hopf_link();

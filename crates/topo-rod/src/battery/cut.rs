@@ -173,6 +173,35 @@ mod tests {
         assert_eq!(cut_candidates(&vec![1.0; 30], 0.25, 0.03).len(), 1);
     }
 
+    /// Of a link, the components compete: sites come from all that are closed, with their own vertex and s/L.
+    #[test]
+    fn candidates_are_those_of_all_closed_components() {
+        let ring = |n: usize| {
+            let at = |k: usize| {
+                let u = std::f64::consts::TAU * k as f64 / n as f64;
+                nalgebra::Vector3::new(u.cos(), u.sin(), 0.0)
+            };
+            let curve = topo_core::Polyline::new((0..n).map(at).collect(), true).unwrap();
+            RodState::new(&curve, 0.25 * n as f64, 0.0).unwrap()
+        };
+        let rods = [ring(80), ring(60).cut_at(0).unwrap(), ring(100)];
+        let state = RodState::link(&rods).unwrap();
+        let mut density = vec![1.0; state.n_vertices()];
+        (density[20], density[100], density[80 + 61 + 25]) = (2.95, 9.0, 3.0);
+        let found = candidates_of(&state, &density, 0.03);
+        let sites: Vec<_> = found
+            .iter()
+            .map(|c| (c.component, c.vertex, c.at))
+            .collect();
+        assert_eq!(sites, [(2, 166, 0.25), (0, 20, 0.25)]);
+        assert_eq!(candidates_of(&state, &density, 0.01).len(), 1);
+        // smoothing stops at the ends of a component
+        density.fill(1.0);
+        density[0] = 21.0;
+        let smoothed = state.smoothed(&density);
+        assert!(smoothed[79] > 1.5 && smoothed[80..].iter().all(|w| (w - 1.0).abs() < 1e-12));
+    }
+
     /// Distances are the shorter way round: flanks reach π/0.25 = 12.6 vertices, across the seam as anywhere.
     #[test]
     fn flanks_reach_across_the_seam() {

@@ -124,6 +124,18 @@ mod tests {
             let sum: f64 = pairs.iter().map(|p| p.weight).sum();
             assert!((sum / integral - 1.0).abs() < 0.1, "{sum} {integral}");
         }
+        // of a link, each component has its own
+        let curve =
+            |radius| Polyline::new(ring(radius).map(Vector3::from).collect(), true).unwrap();
+        let rods = [1.0, 0.45, 1.0].map(|r| RodState::new(&curve(r), length, 0.0).unwrap());
+        let mut behind = Vec::new();
+        Core::find(&RodState::link(&rods).unwrap(), &mut behind);
+        let moved = |p: &CorePair| (p.i - 64, p.j - 64, p.weight, p.normal);
+        let expected: Vec<_> = shrunk
+            .iter()
+            .map(|p| (p.i, p.j, p.weight, p.normal))
+            .collect();
+        assert_eq!(behind.iter().map(moved).collect::<Vec<_>>(), expected);
         let first = shrunk[0];
         let pulled = first.normal.dot(&Vector3::new(1.0, 0.0, 0.0));
         assert!(pulled > 0.0 && first.distance < first.limit);

@@ -70,35 +70,40 @@ fn val_forms_of_resistance_by_hand() {
 /// (M_θ + s H_θ) w = q on the edges that are free, those held turn as prescribed.
 #[test]
 fn law_rotations_solve_their_equations() {
-    for closed in [true, false] {
+    let alone = |closed| RodState::link(&[crumpled(closed)]).unwrap();
+    for state in [alone(true), alone(false), link(50.0)] {
+        let (layout, geometry) = (state.layout(), Geometry::new(&state));
+        let n = state.n_edges();
         for held in [vec![], vec![0, 13]] {
-            let state = crumpled(closed);
-            let (chain, geometry) = (state.layout(), Geometry::new(&state));
-            let is_held = |j: &usize| held.contains(j);
-            let fixed: Vec<bool> = (0..40).map(|j| is_held(&j)).collect();
-            let given: Vec<f64> = (0..40).map(|j| (1.7 * f64::from(j)).sin()).collect();
-            let (s, half) = (0.8, 0.5 / state.rest_length());
-            // M_θ + s H_θ and M_θ alone, of the definition
+            let stands = |j: usize| held.contains(&j) || state.unused_edges().any(|k| k == j);
+            let fixed: Vec<bool> = (0..n).map(stands).collect();
+            let given: Vec<f64> = (0..n).map(|j| (1.7 * j as f64).sin()).collect();
+            let s = 0.8;
+            // M_θ + s H_θ and M_θ alone, of the definition; s is that of edges as long as those of the first component
             let apply = |w: &[f64], s: f64| {
-                let mut out = vec![0.0; 40];
-                for i in state.interior() {
-                    let (a, c) = (state.edge_before(i), geometry.cosine[i]);
-                    out[a] += half * (w[a] - c * w[i]) + s * (w[a] - w[i]);
-                    out[i] += half * (w[i] - c * w[a]) + s * (w[i] - w[a]);
+                let mut out = vec![0.0; n];
+                for chain in state.components() {
+                    let half = 0.5 / chain.rest_length();
+                    let s = s * state.components()[0].rest_length() / chain.rest_length();
+                    for i in chain.interior() {
+                        let (a, c) = (chain.edge_before(i), geometry.cosine[i]);
+                        out[a] += half * (w[a] - c * w[i]) + s * (w[a] - w[i]);
+                        out[i] += half * (w[i] - c * w[a]) + s * (w[i] - w[a]);
+                    }
                 }
                 out
             };
             let mut viscosity = TwistViscosity::new(fixed.clone());
-            viscosity.prepare(chain, &geometry.cosine, s).unwrap();
+            viscosity.prepare(layout, &geometry.cosine, s).unwrap();
             let mut w = given.clone();
-            viscosity.solve(chain, &geometry.cosine, s, &mut w);
-            let mut newton = NewtonTwist::new(fixed);
-            newton.prepare(chain, &geometry.cosine, s).unwrap();
+            viscosity.solve(layout, &geometry.cosine, s, &mut w);
+            let mut newton = NewtonTwist::new(fixed.clone());
+            newton.prepare(layout, &geometry.cosine, s).unwrap();
             let mut step = given.clone();
             newton.solve(&mut step);
             let (found, stepped, right) = (apply(&w, s), apply(&step, s), apply(&given, 0.0));
-            for j in 0..40 {
-                if held.contains(&j) {
+            for j in 0..n {
+                if fixed[j] {
                     assert_eq!((w[j], step[j]), (given[j], given[j]));
                 } else {
                     assert!((found[j] - given[j]).abs() < 1e-8, "{j}: {}", found[j]);
