@@ -356,6 +356,7 @@ prop_compose! {
             twist,
             contact: has_contact.then_some(ContactParameters { stiffness }),
             friction: has_friction.then_some(FrictionParameters { ratio, range }),
+            ..RodParameters::default()
         }
     }
 }

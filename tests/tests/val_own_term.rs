@@ -370,11 +370,7 @@ fn law_an_observable_from_outside_is_found_in_every_table() {
         let state = &sample.state;
         let n = state.n_vertices();
         let share = |i: usize| {
-            if state.interior().contains(&i) {
-                1.0
-            } else {
-                0.5
-            }
+            if state.is_interior(i) { 1.0 } else { 0.5 }
         };
         let total: f64 = (0..n).map(share).sum();
         let mean = |f: &dyn Fn(usize) -> Vector3<f64>| {

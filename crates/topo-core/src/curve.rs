@@ -13,4 +13,4 @@ pub use thickness::{
     Thickness, distance_between, thickness, thickness_brute_force, thickness_of_all,
     thickness_of_all_brute_force, vertex_radius, windowed_half_distance,
 };
-pub use writhe::{average_crossing_number, writhe};
+pub use writhe::{average_crossing_number, linking, writhe};

@@ -41,9 +41,9 @@ pub use checkpoint::{
 pub use control::{Rejection, RejectionCounts, StepControl};
 pub use cpu::CpuClock;
 pub use curve::{
-    Polyline, Thickness, average_crossing_number, closest_points, distance_between, thickness,
-    thickness_brute_force, thickness_of_all, thickness_of_all_brute_force, vertex_radius,
-    windowed_half_distance, writhe,
+    Polyline, Thickness, average_crossing_number, closest_points, distance_between, linking,
+    thickness, thickness_brute_force, thickness_of_all, thickness_of_all_brute_force,
+    vertex_radius, windowed_half_distance, writhe,
 };
 pub use discharge::{DischargeCurve, DischargeError};
 pub use error::CurveError;

@@ -1,9 +1,11 @@
 //! The elastic battery: charge (twist, relax closed) → release (cut) → discharge.
 
 pub(crate) mod charge;
+mod curves;
 pub(crate) mod cut;
 pub(crate) mod discharge;
 pub(crate) mod hooks;
+pub(crate) mod links;
 mod phase;
 pub(crate) mod protocol;
 pub(crate) mod record;
@@ -12,11 +14,14 @@ mod tips;
 
 use topo_core::Polyline;
 
+use self::curves::total_length;
 use crate::contact::ContactPairs;
 use crate::energy::{At, EnergyTerm, TermFactory, terms_of};
-use crate::{Accuracy, Ends, Geometry, Guards, RodError, RodModel, RodParameters, RodState, Tube};
+use crate::{
+    Accuracy, Geometry, Guards, RodEnds, RodError, RodModel, RodParameters, RodState, Tube,
+};
 
-/// A tied fibre, ready to be twisted, fused and charged.
+/// A tied fibre, or several, ready to be twisted, fused and charged.
 #[derive(Debug, Clone)]
 pub struct RodBattery {
     parameters: RodParameters,
@@ -24,8 +29,8 @@ pub struct RodBattery {
     guards: Guards,
     tube: Tube,
     ropelength: f64,
-    /// In its own unit.
-    centreline: Polyline,
+    /// One for each component, in their own unit.
+    centrelines: Vec<Polyline>,
     start: RodState,
     /// Terms supplied by the caller.
     own_terms: Vec<TermFactory>,
@@ -34,13 +39,6 @@ pub struct RodBattery {
 impl RodBattery {
     /// Farthest displacement of a disturbed start, in h, with room for rounding.
     const FARTHEST: f64 = 0.5 + 1e-9;
-
-    /// Edges at which the ropelength is measured: contact diameters must not depend on the edges of the rod.
-    const FINE_EDGES: usize = 800;
-    /// Ropelength from which on a curve counts as touching itself.
-    const LONGEST_ROPE: f64 = 1e6;
-    /// Equal edges: within this relative difference they are left as they are.
-    const EDGE_SPREAD: f64 = 1e-9;
 
     /// A battery on a closed centreline, in any unit.
     ///
@@ -58,39 +56,50 @@ impl RodBattery {
         guards: Guards,
         centreline: &Polyline,
     ) -> Result<Self, RodError> {
+        Self::link(
+            parameters,
+            accuracy,
+            guards,
+            std::slice::from_ref(centreline),
+        )
+    }
+
+    /// A battery on the closed centrelines of a link, in any common unit and where they are.
+    ///
+    /// Slenderness and ropelength are those of all components together: L is the natural length of the whole link, which the
+    /// components share in proportion to their curves, and the thickness is that of the thickest tubes that overlap nowhere. So are
+    /// the edges of `parameters`; the twist density is the same in all. Of one curve it is [`new`](Self::new).
+    ///
+    /// # Errors
+    /// A parameter out of range, no curve, or curves that are open, touch themselves or each other or are unusable.
+    ///
+    /// # Validation
+    /// `val_a_tight_hopf_link_has_the_ropelength_of_eight_pi`
+    pub fn link(
+        parameters: &RodParameters,
+        accuracy: &Accuracy,
+        guards: Guards,
+        centrelines: &[Polyline],
+    ) -> Result<Self, RodError> {
         let parameters = parameters.clone().checked()?;
         let accuracy = accuracy.checked()?;
-        if !centreline.is_closed() {
+        if !centrelines.iter().all(Polyline::is_closed) {
             return Err(RodError::WrongTopology {
                 operation: "a battery",
                 needed: "a closed",
             });
         }
-        let fine = centreline.resampled(Self::FINE_EDGES)?;
-        let ropelength = fine.ropelength();
-        if !(0.0..Self::LONGEST_ROPE).contains(&ropelength) {
-            return Err(RodError::TouchesItself {
-                thickness: topo_core::thickness(&fine).tau,
-                length: fine.length(),
-            });
-        }
+        let ropelength = curves::ropelength(centrelines)?;
         let tube = parameters.tube(ropelength)?;
-        let edges = centreline.edge_lengths();
-        let mean = centreline.length() / edges.len() as f64;
-        let is_even = |edge: &f64| (edge / mean - 1.0).abs() <= Self::EDGE_SPREAD;
-        let centreline = if edges.len() == parameters.n_edges && edges.iter().all(is_even) {
-            centreline.clone()
-        } else {
-            centreline.resampled(parameters.n_edges)?
-        };
-        let start = start_of(&centreline, &tube, &parameters)?;
+        let centrelines = curves::evened(centrelines, parameters.n_edges)?;
+        let start = start_of(&centrelines, &tube, &parameters)?;
         Ok(Self {
             parameters,
             accuracy,
             guards,
             tube,
             ropelength,
-            centreline,
+            centrelines,
             start,
             own_terms: Vec::new(),
         })
@@ -112,12 +121,12 @@ impl RodBattery {
         make: impl Fn(&RodState) -> Box<dyn EnergyTerm> + Send + Sync + 'static,
     ) -> Result<Self, RodError> {
         self.own_terms.push(TermFactory::new(make));
-        self.model(&self.start, Ends::default())?;
+        self.model(&self.start, RodEnds::default())?;
         Ok(self)
     }
 
     /// The model of a phase that starts from `state`.
-    pub(crate) fn model(&self, state: &RodState, ends: Ends) -> Result<RodModel, RodError> {
+    pub(crate) fn model(&self, state: &RodState, ends: RodEnds) -> Result<RodModel, RodError> {
         let (accuracy, guards) = (&self.accuracy, self.guards);
         let model = RodModel::new(&self.parameters, &self.tube, accuracy, guards, ends, state)?;
         let mut own = self.own_terms.iter();
@@ -154,10 +163,21 @@ impl RodBattery {
     /// # Errors
     /// A curve with another number of vertices, or one that is anywhere more than h/2 from the undisturbed one.
     pub fn disturbed(&self, curve: &Polyline) -> Result<Self, RodError> {
-        let h = self.centreline.length() / self.tube.start_length;
-        let pairs = self.centreline.vertices().iter().zip(curve.vertices());
+        self.disturbed_link(std::slice::from_ref(curve))
+    }
+
+    /// As [`disturbed`](Self::disturbed), with a curve for each component.
+    ///
+    /// # Errors
+    /// Another number of curves; those of [`disturbed`](Self::disturbed).
+    pub fn disturbed_link(&self, curves: &[Polyline]) -> Result<Self, RodError> {
+        let h = total_length(&self.centrelines) / self.tube.start_length;
+        let both = || self.centrelines.iter().zip(curves);
+        let pairs = both().flat_map(|(own, curve)| own.vertices().iter().zip(curve.vertices()));
         let moved = pairs.map(|(a, b)| (a - b).norm()).fold(0.0, f64::max) / h;
-        let is_alike = curve.is_closed() && curve.n_vertices() == self.centreline.n_vertices();
+        let is_alike = self.centrelines.len() == curves.len()
+            && both()
+                .all(|(own, curve)| curve.is_closed() && curve.n_vertices() == own.n_vertices());
         if !is_alike || moved > Self::FARTHEST {
             return Err(RodError::Disturbance {
                 moved: if is_alike { moved } else { f64::INFINITY },
@@ -165,8 +185,8 @@ impl RodBattery {
             });
         }
         Ok(Self {
-            centreline: curve.clone(),
-            start: start_of(curve, &self.tube, &self.parameters)?,
+            centrelines: curves.to_vec(),
+            start: start_of(curves, &self.tube, &self.parameters)?,
             ..self.clone()
         })
     }
@@ -176,17 +196,23 @@ impl RodBattery {
     /// # Errors
     /// As [`new`](Self::new); none in practice, since the curve itself was accepted.
     pub fn mirrored(&self) -> Result<Self, RodError> {
-        let centreline = self.centreline.mirrored();
+        let centrelines: Vec<Polyline> = self.centrelines.iter().map(Polyline::mirrored).collect();
         Ok(Self {
-            start: start_of(&centreline, &self.tube, &self.parameters)?,
-            centreline,
+            start: start_of(&centrelines, &self.tube, &self.parameters)?,
+            centrelines,
             ..self.clone()
         })
     }
 
-    /// The start curve of as many equal edges as the rod has, in the unit of the curve that was given.
+    /// The start curve of as many equal edges as the rod has, in the unit of the curve that was given; that of the first component of a
+    /// link.
     pub fn centreline(&self) -> &Polyline {
-        &self.centreline
+        &self.centrelines[0]
+    }
+
+    /// The start curve of each component, in the unit of the curves that were given.
+    pub fn centrelines(&self) -> &[Polyline] {
+        &self.centrelines
     }
 
     /// Length over thickness of the curve that was given.
@@ -215,14 +241,26 @@ impl RodBattery {
     }
 }
 
-/// The rod on a centreline that is scaled as the reading says.
+/// The rods on centrelines that are scaled as the reading says.
 fn start_of(
-    centreline: &Polyline,
+    centrelines: &[Polyline],
     tube: &Tube,
     parameters: &RodParameters,
 ) -> Result<RodState, RodError> {
-    let curve = centreline.scaled(tube.start_length / centreline.length())?;
-    RodState::new(&curve, tube.length, parameters.twist.unwrap_or(0.0))
+    let (length, twist) = (total_length(centrelines), parameters.twist.unwrap_or(0.0));
+    let of = |centreline: &Polyline| {
+        let curve = centreline.scaled(tube.start_length / length)?;
+        let natural = match centrelines {
+            [_] => tube.length,
+            _ => tube.length * (centreline.length() / length),
+        };
+        RodState::new(&curve, natural, twist)
+    };
+    let rods: Vec<RodState> = centrelines
+        .iter()
+        .map(of)
+        .collect::<Result<_, RodError>>()?;
+    RodState::link(&rods)
 }
 
 #[cfg(test)]

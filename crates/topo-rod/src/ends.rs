@@ -1,10 +1,15 @@
 //! How the ends of an open rod are held, moved and loaded.
 
+mod placed;
+
 use nalgebra::Vector3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::{RodError, RodState};
+use crate::RodError;
+
+pub(crate) use placed::PlacedEnds;
+pub use placed::RodEnds;
 
 /// How one end is held.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
@@ -110,34 +115,6 @@ impl Ends {
     /// Whether work can flow in or out at the ends.
     pub fn is_driven(&self) -> bool {
         self.motions != [EndMotion::default(); 2]
-    }
-
-    /// Vertices that are held, each with its prescribed velocity, in h E_b/η.
-    pub fn held_vertices(&self, state: &RodState) -> Vec<(usize, Vector3<f64>)> {
-        let last = state.n_vertices() - 1;
-        let mut held = Vec::new();
-        for (end, order) in [[0, 1], [last, last - 1]].into_iter().enumerate() {
-            let n = match self.conditions[end] {
-                EndCondition::Free => 0,
-                EndCondition::Pinned => 1,
-                EndCondition::Clamped => 2,
-            };
-            held.extend(
-                order[..n]
-                    .iter()
-                    .map(|&i| (i, Vector3::from(self.motions[end].velocity))),
-            );
-        }
-        held
-    }
-
-    /// Edges whose rotation is held, each with its prescribed rate, in E_b/η.
-    pub fn held_edges(&self, state: &RodState) -> Vec<(usize, f64)> {
-        [(0, 0), (1, state.n_edges() - 1)]
-            .into_iter()
-            .filter(|&(end, _)| self.conditions[end] == EndCondition::Clamped)
-            .map(|(end, edge)| (edge, self.motions[end].rotation_rate))
-            .collect()
     }
 }
 

@@ -47,11 +47,7 @@ pub struct At<'a> {
 impl At<'_> {
     /// Arclength l_i of vertex `i`, in h: that of an edge, half of it at a free end.
     pub fn share(&self, i: usize) -> f64 {
-        if self.state.interior().contains(&i) {
-            self.state.rest_length()
-        } else {
-            0.5 * self.state.rest_length()
-        }
+        self.state.chain_of(i).share(i)
     }
 }
 
@@ -60,7 +56,7 @@ impl At<'_> {
 pub struct Force {
     /// −∂e/∂x_i, one per vertex, in E_b.
     pub vertex: Vec<Vector3<f64>>,
-    /// −∂e/∂θ_j, one per edge, in E_b h.
+    /// −∂e/∂θ_j, one per edge, in E_b h (0 where no edge is: [`Layout`](crate::Layout)).
     pub torque: Vec<f64>,
 }
 

@@ -41,6 +41,19 @@ pub enum RodError {
         /// The least number accepted.
         least: usize,
     },
+    /// A link without rods.
+    #[error("a link needs at least one component: give it a curve")]
+    NoComponent,
+    /// A component that does not exist, or the same one twice where two are needed.
+    #[error(
+        "there is no such component as {c} here: take one of 0 to {n_components} - 1, none twice"
+    )]
+    Component {
+        /// Component requested.
+        c: usize,
+        /// How many there are.
+        n_components: usize,
+    },
     /// The operation needs the other kind of rod.
     #[error("{operation} needs {needed} rod")]
     WrongTopology {

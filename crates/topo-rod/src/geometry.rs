@@ -10,7 +10,7 @@ const COLLAPSED: f64 = 1e-3;
 /// Geometry of one state: what bend, twist, stretch and twist viscosity share.
 #[derive(Debug, Clone, Default)]
 pub struct Geometry {
-    /// Length of each edge, in h.
+    /// Length of each edge, in h (0 where no edge is: [`Layout`](crate::Layout)).
     pub edge_length: Vec<f64>,
     /// Unit tangent of each edge.
     pub tangent: Vec<Vector3<f64>>,
@@ -38,19 +38,22 @@ impl Geometry {
         self.binormal.clear();
         self.binormal.resize(n, Vector3::zeros());
         let mut sound = true;
-        for j in 0..n_edges {
-            let e = x[state.edge_end(j)] - x[j];
-            let length = e.norm();
-            sound &= length > COLLAPSED * state.rest_length();
-            self.edge_length[j] = length;
-            self.tangent[j] = e / length;
-        }
-        for i in state.interior() {
-            let (a, b) = (self.tangent[state.edge_before(i)], self.tangent[i]);
-            let c = a.dot(&b);
-            sound &= c > -1.0 + 1e-6;
-            self.cosine[i] = c;
-            self.binormal[i] = a.cross(&b) * (2.0 / (1.0 + c));
+        for chain in state.components() {
+            let least = COLLAPSED * chain.rest_length();
+            for j in chain.edges() {
+                let e = x[chain.edge_end(j)] - x[j];
+                let length = e.norm();
+                sound &= length > least;
+                self.edge_length[j] = length;
+                self.tangent[j] = e / length;
+            }
+            for i in chain.interior() {
+                let (a, b) = (self.tangent[chain.edge_before(i)], self.tangent[i]);
+                let c = a.dot(&b);
+                sound &= c > -1.0 + 1e-6;
+                self.cosine[i] = c;
+                self.binormal[i] = a.cross(&b) * (2.0 / (1.0 + c));
+            }
         }
         sound
     }

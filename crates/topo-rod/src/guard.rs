@@ -4,9 +4,8 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use topo_core::Rejection;
 
-use crate::RodState;
-use crate::contact::ContactPairs;
-use crate::contact::segment_distance;
+use crate::contact::{ContactPairs, segment_distance};
+use crate::{Chain, RodState};
 
 /// Limits on one step; each refuses with a name of its own.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -120,36 +119,31 @@ pub(crate) fn certify(
     pairs: &ContactPairs,
     near: &mut Vec<(u32, u32)>,
 ) -> Result<(), Rejection> {
-    let (x, n_edges) = (from.vertices(), from.n_edges());
-    let longest = (0..n_edges)
-        .map(|j| (x[from.edge_end(j)] - x[j]).norm_squared())
+    let x = from.vertices();
+    let edges = || from.components().iter().flat_map(Chain::edges);
+    let longest = from
+        .components()
+        .iter()
+        .flat_map(|chain| chain.edges().map(|j| x[chain.edge_end(j)] - x[j]))
+        .map(|edge| edge.norm_squared())
         .fold(0.0, f64::max)
         .sqrt();
     let limit = 2.0 * largest + longest;
-    // neighbours along the rod, which the contact list leaves out
-    let joined = from.is_closed() || pairs.is_cyclic();
-    let farthest = if joined { n_edges / 2 } else { n_edges };
-    let width = ((pairs.window().outer() / from.rest_length())
-        .min(n_edges as f64)
-        .ceil() as usize
-        + 1)
-    .min(farthest);
-    for i in 0..n_edges {
-        for k in 2..=width {
-            let j = i + k;
-            if j < n_edges {
-                certify_pair(from, step, limit, i, j)?;
-            } else if joined {
-                certify_pair(from, step, limit, i, j - n_edges)?;
-            }
-        }
+    for c in 0..from.n_components() {
+        certify_neighbours(from, step, limit, pairs, c)?;
     }
     // strands in reach of each other: edges around each listed pair of vertices
     if !pairs.vertices_within(limit, x, near) {
         // so coarse a rod that the list is shorter than its edges
-        for i in 0..n_edges {
-            for j in i + 2..n_edges - usize::from(joined && i == 0) {
-                certify_pair(from, step, limit, i, j)?;
+        for i in edges() {
+            let chain = from.chain_of(i);
+            let joined = chain.is_closed() || pairs.is_cyclic_along(from, from.component_of(i));
+            let seam = chain.edges().end - 1;
+            for j in edges().filter(|&j| j > i) {
+                let adjoin = j == i + 1 && chain.edges().contains(&j);
+                if !adjoin && !(joined && i == chain.first() && j == seam) {
+                    certify_pair(from, step, limit, i, j)?;
+                }
             }
         }
     }
@@ -159,6 +153,36 @@ pub(crate) fn certify(
                 if i != j && from.edge_end(i) != j && from.edge_end(j) != i {
                     certify_pair(from, step, limit, i, j)?;
                 }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Proof for neighbours along component `c`, which the contact list leaves out.
+fn certify_neighbours(
+    from: &RodState,
+    step: &[f64],
+    limit: f64,
+    pairs: &ContactPairs,
+    c: usize,
+) -> Result<(), Rejection> {
+    let chain = &from.components()[c];
+    let (edges, n_edges) = (chain.edges(), chain.n_edges());
+    let joined = chain.is_closed() || pairs.is_cyclic_along(from, c);
+    let farthest = if joined { n_edges / 2 } else { n_edges };
+    let width = ((pairs.window().outer() / chain.rest_length())
+        .min(n_edges as f64)
+        .ceil() as usize
+        + 1)
+    .min(farthest);
+    for i in edges.clone() {
+        for k in 2..=width {
+            let j = i + k;
+            if j < edges.end {
+                certify_pair(from, step, limit, i, j)?;
+            } else if joined {
+                certify_pair(from, step, limit, i, j - n_edges)?;
             }
         }
     }
@@ -198,14 +222,10 @@ fn certify_pair(
 }
 
 /// The edges that meet at a vertex.
-fn edges_at(state: &RodState, i: usize) -> impl Iterator<Item = usize> + '_ {
-    let n_edges = state.n_edges();
-    let before = if state.is_closed() || i > 0 {
-        Some(state.edge_before(i))
-    } else {
-        None
-    };
-    let after = if i < n_edges { Some(i) } else { None };
+fn edges_at(state: &RodState, i: usize) -> impl Iterator<Item = usize> {
+    let chain = state.chain_of(i);
+    let before = (chain.is_closed() || i > chain.first()).then(|| chain.edge_before(i));
+    let after = chain.edges().contains(&i).then_some(i);
     before.into_iter().chain(after)
 }
 

@@ -12,12 +12,14 @@ mod battery;
 mod circle;
 pub mod contact;
 mod density;
+mod drag;
 mod ends;
 pub mod energy;
 mod error;
 pub mod friction;
 mod geometry;
 mod guard;
+mod layout;
 mod model;
 mod newton;
 mod parameters;
@@ -29,18 +31,20 @@ pub use battery::charge::{ChargeSettings, ChargedRod};
 pub use battery::cut::{CutCandidate, CutRod, CutSite, cut_candidates};
 pub use battery::discharge::{Discharge, DischargeSettings};
 pub use battery::hooks::RunHooks;
+pub use battery::links::Linking;
 pub use battery::protocol::Protocol;
 pub use battery::record::{PhaseReport, RodPhase, RodSample, RunRecord};
 pub use circle::{cut_circle_energy, cut_circle_time};
 pub use density::smoothed_density;
-pub use ends::{EndCondition, EndMotion, Ends};
+pub use ends::{EndCondition, EndMotion, Ends, RodEnds};
 pub use error::RodError;
 pub use geometry::Geometry;
 pub use guard::Guards;
+pub use layout::{Chain, Layout};
 pub use model::{RodModel, WorkAccount};
 pub use nalgebra::{Matrix3, Vector3};
 pub use parameters::{
     Accuracy, ContactParameters, FrictionParameters, FrictionRange, IntegratorKind, Reading,
     RodParameters, Tube,
 };
-pub use state::{Chain, RodState};
+pub use state::RodState;

@@ -14,6 +14,8 @@ use nalgebra::Vector3;
 use topo_core::{Ledger, Model, Rejection};
 
 use crate::contact::ContactPairs;
+use crate::drag::Drag;
+use crate::ends::PlacedEnds;
 use crate::energy::{
     At, ContactEnergy, EnergyTerm, Force, RodParts, Stiffness, Twist, checked_name, terms_of,
 };
@@ -21,7 +23,7 @@ use crate::friction::Friction;
 use crate::guard::{RiseBudget, certify, largest_displacement};
 use crate::newton::{NewtonMatrix, NewtonTwist};
 use crate::viscosity::{CentrelineViscosity, TwistViscosity, remove_mean};
-use crate::{Accuracy, Ends, Geometry, Guards, RodError, RodParameters, RodState, Tube};
+use crate::{Accuracy, Chain, Geometry, Guards, RodEnds, RodError, RodParameters, RodState, Tube};
 use approaching::ApproachingPairs;
 use parts::{Accepted, Frozen, unsolvable};
 
@@ -42,7 +44,8 @@ pub struct RodModel {
     friction: Option<Friction>,
     pairs: ContactPairs,
     has_strands: bool,
-    ends: Ends,
+    ends: Vec<PlacedEnds>,
+    is_driven: bool,
     held_vertices: Vec<(usize, Vector3<f64>)>,
     held_edges: Vec<(usize, f64)>,
     centreline: CentrelineViscosity,
@@ -57,6 +60,7 @@ pub struct RodModel {
     ledger: Ledger,
     n_vertices: usize,
     n_edges: usize,
+    n_layout_bytes: usize,
     at: Evaluation,
     accepted: Accepted,
     near: Vec<(u32, u32)>,
@@ -135,13 +139,13 @@ impl RodModel {
     /// A model for `state`, with only the terms that `parameters` name.
     ///
     /// # Errors
-    /// A parameter out of range, or end conditions on a closed rod.
+    /// A parameter out of range, or end conditions on a closed component.
     pub fn new(
         parameters: &RodParameters,
         tube: &Tube,
         accuracy: &Accuracy,
         guards: Guards,
-        ends: Ends,
+        ends: impl Into<RodEnds>,
         state: &RodState,
     ) -> Result<Self, RodError> {
         let parameters = parameters.clone().checked()?;
@@ -153,24 +157,19 @@ impl RodModel {
             friction,
             reach,
         } = named;
-        let ends = ends.checked(twist.is_some())?;
-        if state.is_closed() && !ends.is_free() {
-            return Err(RodError::WrongTopology {
-                operation: "an end condition",
-                needed: "an open",
-            });
-        }
+        let ends = ends.into().placed(state, twist.is_some())?;
         let terms = terms_of(&parameters, tube);
         let pairs = named.pairs(accuracy.skin, state.is_closed());
         let (n_vertices, n_edges) = (state.n_vertices(), state.n_edges());
-        let held_vertices = ends.held_vertices(state);
-        let held_edges = if twist.is_some() {
-            ends.held_edges(state)
-        } else {
-            Vec::new()
+        let held_vertices: Vec<_> = ends.iter().flat_map(PlacedEnds::held_vertices).collect();
+        let held_edges: Vec<_> = match twist {
+            Some(_) => ends.iter().flat_map(PlacedEnds::held_edges).collect(),
+            None => Vec::new(),
         };
         let fixed = marked(n_vertices, held_vertices.iter().map(|h| h.0));
-        let fixed_edges = marked(n_edges, held_edges.iter().map(|h| h.0));
+        let turning = held_edges.iter().map(|h| h.0);
+        let fixed_edges = marked(n_edges, turning.chain(state.unused_edges()));
+        let drag = Drag::of(state, &fixed, parameters.drag);
         let names: Vec<&'static str> = terms.iter().map(|t| t.name()).collect();
         Ok(Self {
             parts: RodParts::of(&terms),
@@ -181,12 +180,13 @@ impl RodModel {
             friction,
             pairs,
             has_strands: reach > 0.0,
+            is_driven: ends.iter().any(|placed| placed.ends.is_driven()),
             ends,
             held_vertices,
             held_edges,
-            centreline: CentrelineViscosity::new(fixed.clone()),
+            centreline: CentrelineViscosity::new(fixed.clone()).with_drag(drag.clone()),
             rotation: twist.map(|_| TwistViscosity::new(fixed_edges.clone())),
-            newton: NewtonMatrix::new(fixed),
+            newton: NewtonMatrix::new(fixed).with_drag(drag),
             newton_twist: twist.map(|_| NewtonTwist::new(fixed_edges)),
             probe: Vec::new(),
             rate_there: Vec::new(),
@@ -200,6 +200,7 @@ impl RodModel {
             ledger: Ledger::new(&names, &CHANNELS),
             n_vertices,
             n_edges,
+            n_layout_bytes: state.layout().n_bytes(),
             at: Evaluation::default(),
             accepted: Accepted::default(),
             near: Vec::new(),
@@ -272,6 +273,12 @@ impl RodModel {
         }
     }
 
+    /// Names the component that a cut has opened, of several: [`set_cyclic`](Self::set_cyclic) is about its ends.
+    pub fn set_joined(&mut self, component: Option<usize>) {
+        self.pairs.set_joined(component);
+        self.forget();
+    }
+
     /// Forgets cached evaluations and patterns.
     fn forget(&mut self) {
         self.at.stamp = None;
@@ -308,12 +315,11 @@ impl RodModel {
             let energy = term.add_force(at, &mut self.at.force);
             self.at.energies.push(energy);
         }
-        if self.ends.is_driven() {
-            let last = [0, self.n_vertices - 1];
-            let last_edge = [0, self.n_edges - 1];
-            for (end, motion) in self.ends.motions.iter().enumerate() {
-                self.at.force.vertex[last[end]] += Vector3::from(motion.force);
-                self.at.force.torque[last_edge[end]] += motion.torque;
+        for placed in self.ends.iter().filter(|placed| placed.ends.is_driven()) {
+            let (vertices, edges) = (placed.vertices(), placed.edges());
+            for (end, motion) in placed.ends.motions.iter().enumerate() {
+                self.at.force.vertex[vertices[end]] += Vector3::from(motion.force);
+                self.at.force.torque[edges[end]] += motion.torque;
             }
         }
         if let Some(friction) = self.friction {
@@ -343,7 +349,7 @@ impl RodModel {
             .prepare(state, &self.pairs, self.friction)
             .map_err(|e| unsolvable(e, "the centreline mobility"))?;
         self.centreline
-            .solve(state.chain(), &self.at.couplings, &mut rate[..3 * n]);
+            .solve(state, &self.at.couplings, &mut rate[..3 * n]);
         if let Some(rotation) = self.rotation.as_mut() {
             let w = &mut rate[3 * n..];
             w.copy_from_slice(&self.at.force.torque);
@@ -351,9 +357,9 @@ impl RodModel {
                 w[j] = turn;
             }
             rotation
-                .prepare(state.chain(), &self.at.geometry.cosine, 0.0)
+                .prepare(state, &self.at.geometry.cosine, 0.0)
                 .map_err(|e| unsolvable(e, "the twist mobility"))?;
-            rotation.solve(state.chain(), &self.at.geometry.cosine, 0.0, w);
+            rotation.solve(state, &self.at.geometry.cosine, 0.0, w);
         }
         Ok(())
     }
@@ -410,16 +416,15 @@ impl Model for RodModel {
                 limit: self.guards.displacement,
             });
         }
-        for j in 0..self.n_edges {
-            let (a, b) = (
-                from.vertices()[from.edge_end(j)] - from.vertices()[j],
-                to.vertices()[to.edge_end(j)] - to.vertices()[j],
-            );
-            if a.dot(&b) <= 0.0 {
-                return Err(Rejection::Domain {
-                    what: "an edge turned by a right angle in one step",
-                });
-            }
+        let (x, y) = (from.vertices(), to.vertices());
+        let turned = |chain: &Chain| {
+            let edges = &mut chain.edges().map(|j| (j, chain.edge_end(j)));
+            edges.any(|(a, b)| (x[b] - x[a]).dot(&(y[b] - y[a])) <= 0.0)
+        };
+        if from.components().iter().any(turned) {
+            return Err(Rejection::Domain {
+                what: "an edge turned by a right angle in one step",
+            });
         }
         if self.has_strands {
             if self.pairs.ensure(from) {
@@ -444,7 +449,7 @@ impl Model for RodModel {
         self.ledger.add_work(work);
         let total: f64 = self.at.energies.iter().sum();
         self.rises.book(total - self.accepted.total - work.max(0.0));
-        if self.ends.is_driven() {
+        if self.is_driven {
             self.rises.widen(total);
         }
         self.dissipate(from, to, step, dt);

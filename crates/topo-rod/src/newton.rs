@@ -5,9 +5,10 @@ use serde::{Deserialize, Serialize};
 use topo_sparse::{SparseCholesky, SparseError};
 
 use crate::contact::{ContactPairs, KnownPairs};
+use crate::drag::{Drag, DragCorrection};
 use crate::energy::Stiffness;
 use crate::viscosity::{TwistViscosity, remove_mean};
-use crate::{Chain, RodState};
+use crate::{Chain, Layout, RodState};
 
 /// Block matrix of the centreline with a symbolic factor that is kept as long as the pairs in contact are known to it.
 #[derive(Debug, Default)]
@@ -22,7 +23,8 @@ pub(crate) struct NewtonMatrix {
     floating: bool,
     /// Whether a term may hold the rod as a whole.
     is_tethered: bool,
-    chain: Chain,
+    drag: Option<DragCorrection>,
+    layout: Layout,
     work: Vec<f64>,
     right: Vec<f64>,
     pub n_patterns: u64,
@@ -92,8 +94,11 @@ impl NewtonMatrix {
             }
             solver.values_mut().copy_from_slice(&factor.values);
             solver.factor()?;
+            if let Some(several) = &mut self.drag {
+                several.prepare(solver);
+            }
             (self.couplings, self.driven) = (factor.couplings, factor.driven);
-            self.chain = state.chain();
+            self.layout.clone_from(state);
         }
         self.n_patterns = memory.n_patterns;
         self.n_factorisations = memory.n_factorisations;
@@ -107,6 +112,17 @@ impl NewtonMatrix {
             floating,
             ..Self::default()
         }
+    }
+
+    /// The same with the drag on floating components of several.
+    pub(crate) fn with_drag(mut self, drag: Option<Drag>) -> Self {
+        self.drag = drag.map(|drag| DragCorrection::new(drag, 3));
+        self
+    }
+
+    /// Bytes held for further components.
+    pub(crate) fn n_component_bytes(&self) -> usize {
+        self.drag.as_ref().map_or(0, DragCorrection::n_bytes)
     }
 
     /// Grounds a floating rod by a trace only, for terms that may hold it as a whole: with their stiffness in the matrix a firm ground
@@ -134,13 +150,12 @@ impl NewtonMatrix {
         self.keep_pattern(state, pairs, stiffness)?;
         self.couplings.clear();
         self.couplings.extend_from_slice(couplings);
-        self.chain = state.chain();
+        self.layout.clone_from(state);
         let Some(solver) = self.solver.as_mut() else {
             return Ok(());
         };
         let values = solver.values_mut();
         values.fill(0.0);
-        let viscous = 1.0 / self.chain.rest_length();
         let identity = |c: f64| Matrix3::from_diagonal_element(c);
         self.driven.clear();
         let mut add = |block: usize, (a, b): (usize, usize), m: Matrix3<f64>, diagonal: bool| {
@@ -160,16 +175,14 @@ impl NewtonMatrix {
         for i in 0..n {
             add(i, (i, i), stiffness.diagonal[i] * s, true);
         }
-        for j in 0..state.n_edges() {
-            let (a, b) = (j, state.edge_end(j));
-            add(a, (a, a), identity(viscous), true);
-            add(b, (b, b), identity(viscous), true);
-            add(
-                n + j,
-                (a, b),
-                stiffness.next[j] * s - identity(viscous),
-                false,
-            );
+        for chain in state.components() {
+            let viscous = identity(1.0 / chain.rest_length());
+            for j in chain.edges() {
+                let (a, b) = (j, chain.edge_end(j));
+                add(a, (a, a), viscous, true);
+                add(b, (b, b), viscous, true);
+                add(n + j, (a, b), stiffness.next[j] * s - viscous, false);
+            }
         }
         for (i, far) in second_neighbours(state) {
             add(2 * n + i, (i, far), stiffness.second[i] * s, false);
@@ -194,14 +207,27 @@ impl NewtonMatrix {
             add(3 * n + place, (i, j), identity(-c), false);
         }
         // a rod that its own terms may hold as a whole is grounded just enough to be solved for
+        let viscous = 1.0 / state.rest_length();
         let ground = if self.is_tethered {
             LOOSE_GROUND * viscous
         } else {
             viscous
         };
-        hold(values, &self.blocks, &self.fixed, self.floating, ground);
+        match &self.drag {
+            Some(several) => {
+                hold(values, &self.blocks, &self.fixed, several.drag().grounds());
+            }
+            None => {
+                let first = self.floating.then_some((0, ground));
+                hold(values, &self.blocks, &self.fixed, first.into_iter());
+            }
+        }
         self.n_factorisations += 1;
-        solver.factor()
+        solver.factor()?;
+        if let Some(several) = &mut self.drag {
+            several.prepare(solver);
+        }
+        Ok(())
     }
 
     /// Makes a new pattern where the present one cannot be used.
@@ -223,13 +249,16 @@ impl NewtonMatrix {
     fn build_pattern(&mut self, state: &RodState) -> Result<(), SparseError> {
         let n = state.n_vertices();
         let mut blocks: Vec<(usize, usize)> = (0..n).map(|i| (i, i)).collect();
-        blocks.extend((0..n).map(|j| {
-            if j < state.n_edges() {
-                (j, state.edge_end(j))
-            } else {
-                (j, j)
-            }
-        }));
+        for chain in state.components() {
+            let end = |j| {
+                if chain.edges().contains(&j) {
+                    chain.edge_end(j)
+                } else {
+                    j
+                }
+            };
+            blocks.extend(chain.vertices().map(|j| (j, end(j))));
+        }
         let mut second = vec![(0, 0); n];
         for (i, far) in second_neighbours(state) {
             second[i] = (i, far);
@@ -258,23 +287,23 @@ impl NewtonMatrix {
 
     /// r ← (M + s H)⁻¹ M r on a component-major vector; entries of held vertices stay as they are.
     pub(crate) fn solve(&mut self, r: &mut [f64]) {
-        let n = self.chain.n_vertices();
+        let n = self.layout.n_vertices();
         self.work.clear();
         self.work.extend_from_slice(&r[..3 * n]);
         self.right.clear();
         self.right.resize(3 * n, 0.0);
-        let viscous = 1.0 / self.chain.rest_length();
-        for j in 0..self.chain.n_edges() {
-            multiply_pair(
-                &self.work,
-                &mut self.right,
-                n,
-                (j, self.chain.edge_end(j)),
-                viscous,
-            );
+        for chain in self.layout.components() {
+            let viscous = 1.0 / chain.rest_length();
+            for j in chain.edges() {
+                let edge = (j, chain.edge_end(j));
+                multiply_pair(&self.work, &mut self.right, n, edge, viscous);
+            }
         }
         for &(i, j, c) in &self.couplings {
             multiply_pair(&self.work, &mut self.right, n, (i as usize, j as usize), c);
+        }
+        if let Some(several) = &self.drag {
+            several.drag().add_product(&self.work, &mut self.right);
         }
         for (free, held, block) in &self.driven {
             let w = Vector3::from_fn(|k, _| self.work[k * n + held]);
@@ -291,24 +320,33 @@ impl NewtonMatrix {
             }
             solver.solve_in_place(&mut self.right, 1);
         }
+        if let Some(several) = &self.drag {
+            several.correct(&mut self.right);
+        }
         for i in (0..n).filter(|&i| !self.fixed[i]) {
             for k in 0..3 {
                 r[k * n + i] = self.right[3 * i + k];
             }
         }
-        if self.floating {
-            remove_mean(r, n);
+        match &self.drag {
+            Some(several) => several.drag().keep_centroid(r),
+            None if self.floating => remove_mean(r, n),
+            None => {}
         }
     }
 }
 
-/// Closes the rows of held vertices by ones, and those of the first vertex of a floating rod by `ground`.
-fn hold(values: &mut [f64], blocks: &[[usize; 9]], fixed: &[bool], floating: bool, ground: f64) {
-    for (i, &is_held) in fixed.iter().enumerate() {
-        let grounded = if floating && i == 0 { ground } else { 0.0 };
-        let held = if is_held { 1.0 } else { grounded };
+/// Closes the rows of held vertices by ones, and adds the `grounds` of what floats.
+fn hold(
+    values: &mut [f64],
+    blocks: &[[usize; 9]],
+    fixed: &[bool],
+    grounds: impl Iterator<Item = (usize, f64)>,
+) {
+    let held = (0..fixed.len()).filter(|&i| fixed[i]).map(|i| (i, 1.0));
+    for (i, value) in held.chain(grounds) {
         for k in [0, 4, 8] {
-            values[blocks[i][k]] += held;
+            values[blocks[i][k]] += value;
         }
     }
 }
@@ -326,17 +364,21 @@ fn multiply_pair(u: &[f64], out: &mut [f64], n: usize, (a, b): (usize, usize), c
     }
 }
 
-/// Pairs (i, i + 2) along the rod.
+/// Pairs (i, i + 2) along each component.
 fn second_neighbours(state: &RodState) -> impl Iterator<Item = (usize, usize)> {
-    let (n, closed) = (state.n_vertices(), state.is_closed());
-    (0..if closed { n } else { n - 2 }).map(move |i| (i, (i + 2) % n))
+    let along = |chain: &Chain| {
+        let (first, n) = (chain.first(), chain.n_vertices());
+        let n_pairs = if chain.is_closed() { n } else { n - 2 };
+        (0..n_pairs).map(move |i| (first + i, first + (i + 2) % n))
+    };
+    state.components().iter().flat_map(along)
 }
 
 /// The matrix of the linearly implicit steps on the edge rotations, M_θ + s H_θ with H_θ of the twist energy.
 #[derive(Debug)]
 pub(crate) struct NewtonTwist {
     viscosity: TwistViscosity,
-    chain: Chain,
+    layout: Layout,
     cosine: Vec<f64>,
     stiffness: f64,
     held: Vec<bool>,
@@ -376,24 +418,28 @@ impl NewtonTwist {
     /// Makes the matrix again that was remembered.
     pub(crate) fn recall(
         &mut self,
-        chain: Chain,
+        layout: &Layout,
         memory: NewtonTwistMemory,
     ) -> Result<(), SparseError> {
         if memory.n_factorisations.is_some() {
-            self.chain = chain;
+            self.layout.clone_from(layout);
             self.stiffness = memory.stiffness;
-            self.work = vec![0.0; chain.n_edges()];
+            self.work = vec![0.0; layout.n_edges()];
         }
         self.cosine = memory.cosine;
-        self.viscosity
-            .recall(chain, &self.cosine, self.stiffness, memory.n_factorisations)
+        self.viscosity.recall(
+            layout,
+            &self.cosine,
+            self.stiffness,
+            memory.n_factorisations,
+        )
     }
 
     pub(crate) fn new(held: Vec<bool>) -> Self {
         let viscosity = TwistViscosity::new(held.clone());
         Self {
             viscosity,
-            chain: Chain::default(),
+            layout: Layout::default(),
             cosine: Vec::new(),
             stiffness: 0.0,
             held,
@@ -412,20 +458,19 @@ impl NewtonTwist {
 
     pub(crate) fn prepare(
         &mut self,
-        chain: Chain,
+        layout: &Layout,
         cosine: &[f64],
         stiffness: f64,
     ) -> Result<(), SparseError> {
-        self.chain = chain;
+        self.layout.clone_from(layout);
         self.cosine.clear();
         self.cosine.extend_from_slice(cosine);
         self.stiffness = stiffness;
-        self.viscosity.prepare(chain, cosine, stiffness)
+        self.viscosity.prepare(layout, cosine, stiffness)
     }
 
     /// w ← (M_θ + s H_θ)⁻¹ M_θ w; entries of held edges stay as they are.
     pub(crate) fn solve(&mut self, w: &mut [f64]) {
-        let half = 0.5 / self.chain.rest_length();
         self.work.clear();
         self.work.extend_from_slice(w);
         let right = &mut *w;
@@ -437,14 +482,17 @@ impl NewtonTwist {
             .map(|(j, _)| (j, right[j]))
             .collect();
         right.fill(0.0);
-        for i in self.chain.interior() {
-            let (a, b) = (self.chain.edge_before(i), i);
-            right[a] += half * (self.work[a] - self.cosine[i] * self.work[b]);
-            right[b] += half * (self.work[b] - self.cosine[i] * self.work[a]);
+        for chain in self.layout.components() {
+            let half = 0.5 / chain.rest_length();
+            for i in chain.interior() {
+                let (a, b) = (chain.edge_before(i), i);
+                right[a] += half * (self.work[a] - self.cosine[i] * self.work[b]);
+                right[b] += half * (self.work[b] - self.cosine[i] * self.work[a]);
+            }
         }
         given.iter().for_each(|g| right[g.0] = g.1);
         self.viscosity
-            .solve(self.chain, &self.cosine, self.stiffness, right);
+            .solve(&self.layout, &self.cosine, self.stiffness, right);
         given.iter().for_each(|g| right[g.0] = g.1);
     }
 }

@@ -119,6 +119,20 @@ pub struct RodParameters {
     pub contact: Option<ContactParameters>,
     /// `None`: no friction is modelled.
     pub friction: Option<FrictionParameters>,
+    /// Drag ζ on the mean velocity of each component of a link, Z_c = ζ L_c/L²: no unit. A rod of one component has none.
+    #[serde(default = "usual_drag", skip_serializing_if = "is_usual_drag")]
+    pub drag: f64,
+}
+
+/// Resistance of a component to its motion as a whole, in parts of that to its slowest bending; results do not depend on it.
+const USUAL_DRAG: f64 = 1.0;
+
+fn usual_drag() -> f64 {
+    USUAL_DRAG
+}
+
+fn is_usual_drag(drag: &f64) -> bool {
+    *drag == USUAL_DRAG
 }
 
 impl Default for RodParameters {
@@ -132,6 +146,7 @@ impl Default for RodParameters {
             twist: Some(0.0),
             contact: Some(ContactParameters::default()),
             friction: Some(FrictionParameters::default()),
+            drag: USUAL_DRAG,
         }
     }
 }
@@ -154,6 +169,7 @@ impl RodParameters {
         }
         in_range("twist_ratio", self.twist_ratio, 1e-6, 1e3)?;
         in_range("stretch_ratio", self.stretch_ratio, 1e-3, 1e6)?;
+        in_range("drag", self.drag, 1e-6, 1e6)?;
         if let Some(twist) = self.twist {
             finite("twist", twist)?;
         }

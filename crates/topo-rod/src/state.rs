@@ -1,71 +1,20 @@
-//! The degrees of freedom of a rod: vertices and integrated twists.
+//! The degrees of freedom of one or several rods: vertices and integrated twists.
+
+mod measures;
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use topo_core::Polyline;
 
-use crate::RodError;
-
-/// How vertices and edges of a rod are joined, and the natural length of an edge.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-pub struct Chain {
-    n_vertices: usize,
-    closed: bool,
-    rest_length: f64,
-}
-
-impl Chain {
-    /// Number of vertices.
-    pub fn n_vertices(&self) -> usize {
-        self.n_vertices
-    }
-
-    /// Number of edges.
-    pub fn n_edges(&self) -> usize {
-        self.n_vertices - usize::from(!self.closed)
-    }
-
-    /// Whether the ends are fused.
-    pub fn is_closed(&self) -> bool {
-        self.closed
-    }
-
-    /// Natural length of an edge, in h.
-    pub fn rest_length(&self) -> f64 {
-        self.rest_length
-    }
-
-    /// Natural length of the rod, in h.
-    pub fn length(&self) -> f64 {
-        self.rest_length * self.n_edges() as f64
-    }
-
-    /// Vertices that carry curvature and twist.
-    pub fn interior(&self) -> std::ops::Range<usize> {
-        if self.closed {
-            0..self.n_vertices
-        } else {
-            1..self.n_vertices - 1
-        }
-    }
-
-    /// Index of the edge that ends at vertex `i` (edge `i` starts there).
-    #[inline]
-    pub fn edge_before(&self, i: usize) -> usize {
-        if i == 0 { self.n_edges() - 1 } else { i - 1 }
-    }
-
-    /// Vertex at the end of edge `j`.
-    #[inline]
-    pub fn edge_end(&self, j: usize) -> usize {
-        if j + 1 == self.n_vertices { 0 } else { j + 1 }
-    }
-}
+use crate::{Chain, Layout, RodError};
 
 /// A discrete rod: vertices x_i and the integrated twist m_i of each interior vertex.
 ///
 /// An isotropic rod needs no stored frames: the twist changes by the area that the tangents sweep on the unit sphere. Closed
 /// rods have N vertices and N twists; open rods N + 1 vertices and N − 1 twists (those of the ends are kept at 0).
+///
+/// Several rods, the components of a link, are one state: [`RodState::link`] puts their vertices one after the other, in the
+/// order given, and [`Layout`] says which are whose.
 ///
 /// # References
 /// The discrete rod of [bergou2008], with the twist per vertex as the variable.
@@ -75,15 +24,16 @@ impl Chain {
 pub struct RodState {
     vertices: Vec<Vector3<f64>>,
     twists: Vec<f64>,
-    chain: Chain,
+    #[serde(rename = "chain")]
+    layout: Layout,
     stamp: u64,
 }
 
 impl std::ops::Deref for RodState {
-    type Target = Chain;
+    type Target = Layout;
 
-    fn deref(&self) -> &Chain {
-        &self.chain
+    fn deref(&self) -> &Layout {
+        &self.layout
     }
 }
 
@@ -111,15 +61,10 @@ impl RodState {
             twists[0] = 0.0;
             twists[n - 1] = 0.0;
         }
-        let chain = Chain {
-            n_vertices: n,
-            closed,
-            rest_length,
-        };
         let state = Self {
             vertices: centreline.vertices().to_vec(),
             twists,
-            chain,
+            layout: Layout::of([Chain::new(n, closed, rest_length)]),
             stamp: 0,
         };
         for i in state.interior() {
@@ -142,40 +87,13 @@ impl RodState {
     }
 
     /// How vertices and edges are joined.
-    pub fn chain(&self) -> Chain {
-        self.chain
+    pub fn layout(&self) -> &Layout {
+        &self.layout
     }
 
     /// Unit tangent of edge `j`.
     pub fn tangent(&self, j: usize) -> Vector3<f64> {
         (self.vertices[self.edge_end(j)] - self.vertices[j]).normalize()
-    }
-
-    /// Total twist Tw = Σ m_i / 2π, in turns.
-    pub fn total_twist(&self) -> f64 {
-        self.twists.iter().sum::<f64>() / std::f64::consts::TAU
-    }
-
-    /// Writhe of the centreline by the exact polygon formula.
-    pub fn writhe(&self) -> f64 {
-        topo_core::writhe(&self.vertices, self.chain.closed)
-    }
-
-    /// The centreline as a curve.
-    ///
-    /// # Errors
-    /// Coincident vertices or numbers that are not finite.
-    pub fn centreline(&self) -> Result<Polyline, RodError> {
-        Ok(Polyline::new(self.vertices.clone(), self.chain.closed)?)
-    }
-
-    /// Distance between the two ends, in h (0 while closed).
-    pub fn end_to_end(&self) -> f64 {
-        if self.chain.closed {
-            0.0
-        } else {
-            (self.vertices[self.vertices.len() - 1] - self.vertices[0]).norm()
-        }
     }
 
     /// The same rod with its vertices elsewhere.
@@ -186,10 +104,10 @@ impl RodState {
         }
     }
 
-    /// Whether it is a rod joined like `chain`, all of whose numbers are finite.
-    pub(crate) fn is_sound(&self, chain: Chain) -> bool {
-        let n = chain.n_vertices;
-        self.chain == chain
+    /// Whether it is a rod joined like `layout`, all of whose numbers are finite.
+    pub(crate) fn is_sound(&self, layout: &Layout) -> bool {
+        let n = layout.n_vertices();
+        self.layout == *layout
             && (self.vertices.len(), self.twists.len()) == (n, n)
             && self.vertices.iter().flatten().all(|x| x.is_finite())
             && self.twists.iter().all(|x| x.is_finite())
@@ -200,42 +118,90 @@ impl RodState {
         self.stamp
     }
 
-    /// The rod cut at `vertex`: the vertex is doubled, its twist dropped, the numbering starts there.
+    /// Several rods as one state: their vertices one after the other, in the order given, wherever they are.
     ///
     /// # Errors
-    /// The rod must be closed and the vertex exist.
+    /// No rod at all.
+    ///
+    /// # Validation
+    /// `a_link_is_its_rods_one_after_the_other`
+    pub fn link<'a>(rods: impl IntoIterator<Item = &'a Self>) -> Result<Self, RodError> {
+        let (mut vertices, mut twists, mut chains) = (Vec::new(), Vec::new(), Vec::new());
+        for rod in rods {
+            vertices.extend_from_slice(&rod.vertices);
+            twists.extend_from_slice(&rod.twists);
+            chains.extend_from_slice(rod.components());
+        }
+        if chains.is_empty() {
+            return Err(RodError::NoComponent);
+        }
+        Ok(Self {
+            vertices,
+            twists,
+            layout: Layout::of(chains),
+            stamp: 0,
+        })
+    }
+
+    /// Component `c` alone.
+    ///
+    /// # Errors
+    /// There is no such component.
+    pub fn component(&self, c: usize) -> Result<Self, RodError> {
+        let chain = self.chain(c)?;
+        Ok(Self {
+            vertices: self.vertices[chain.vertices()].to_vec(),
+            twists: self.twists[chain.vertices()].to_vec(),
+            layout: Layout::of([*chain]),
+            stamp: 0,
+        })
+    }
+
+    /// How component `c` is joined.
+    ///
+    /// # Errors
+    /// There is no such component.
+    pub fn chain(&self, c: usize) -> Result<&Chain, RodError> {
+        let n_components = self.n_components();
+        let missing = RodError::Component { c, n_components };
+        self.components().get(c).ok_or(missing)
+    }
+
+    /// The rods with the component cut that has `vertex`: the vertex is doubled, its twist dropped, and the numbering of this component
+    /// starts there. Vertices of components behind it move up by one.
+    ///
+    /// # Errors
+    /// The component must be closed and the vertex exist.
     pub fn cut_at(&self, vertex: usize) -> Result<Self, RodError> {
-        if !self.chain.closed {
+        let n_vertices = self.vertices.len();
+        let cut = *self.chain_of(vertex);
+        if !cut.is_closed() {
             return Err(RodError::WrongTopology {
                 operation: "a cut",
                 needed: "a closed",
             });
         }
-        let n = self.vertices.len();
-        if vertex >= n {
+        if vertex >= n_vertices {
             return Err(RodError::CutSite {
-                at: vertex as f64 / n as f64,
+                at: vertex as f64 / n_vertices as f64,
             });
         }
-        let vertices = (0..=n).map(|k| self.vertices[(vertex + k) % n]).collect();
-        let twists = (0..=n)
-            .map(|k| {
-                if k == 0 || k == n {
-                    0.0
-                } else {
-                    self.twists[(vertex + k) % n]
-                }
-            })
-            .collect();
-        let chain = Chain {
-            n_vertices: n + 1,
-            closed: false,
-            ..self.chain
-        };
+        let (first, n, behind) = (cut.first(), cut.n_vertices(), cut.vertices().end);
+        let from = |k: usize| first + (vertex - first + k) % n;
+        let mut vertices = self.vertices[..first].to_vec();
+        vertices.extend((0..=n).map(|k| self.vertices[from(k)]));
+        vertices.extend_from_slice(&self.vertices[behind..]);
+        let mut twists = self.twists[..first].to_vec();
+        twists.push(0.0);
+        twists.extend((1..n).map(|k| self.twists[from(k)]));
+        twists.push(0.0);
+        twists.extend_from_slice(&self.twists[behind..]);
+        let chains = self.components().iter();
+        let opened = chains.map(|chain| if *chain == cut { cut.opened() } else { *chain });
         Ok(Self {
             vertices,
             twists,
-            chain,
+            layout: Layout::of(opened),
             stamp: self.stamp + 1,
         })
     }
@@ -253,7 +219,7 @@ impl RodState {
     /// where a and b are the tangents before and after the vertex, a' and b' those after the step.
     pub(crate) fn moved_by(&self, step: &[f64], with_twist: bool, stamp: u64, to: &mut RodState) {
         let n = self.vertices.len();
-        to.chain = self.chain;
+        to.layout.clone_from(&self.layout);
         to.stamp = stamp;
         to.vertices.clear();
         to.vertices.extend(
@@ -265,16 +231,20 @@ impl RodState {
             return;
         }
         let turns = &step[3 * n..];
-        let interior = self.interior();
-        let before = self.edge_before(interior.start);
-        let (mut a, mut a_new) = (self.tangent(before), to.tangent(before));
-        let mut turn_before = turns[before];
-        for i in interior {
-            let (b, b_new) = (self.tangent(i), to.tangent(i));
-            to.twists[i] += turns[i] - turn_before
-                + spherical_area(&a, &b, &b_new)
-                + spherical_area(&a, &b_new, &a_new);
-            (a, a_new, turn_before) = (b, b_new, turns[i]);
+        for chain in self.components() {
+            let tangent = |x: &[Vector3<f64>], j: usize| (x[chain.edge_end(j)] - x[j]).normalize();
+            let interior = chain.interior();
+            let before = chain.edge_before(interior.start);
+            let mut a = tangent(&self.vertices, before);
+            let mut a_new = tangent(&to.vertices, before);
+            let mut turn_before = turns[before];
+            for i in interior {
+                let (b, b_new) = (tangent(&self.vertices, i), tangent(&to.vertices, i));
+                to.twists[i] += turns[i] - turn_before
+                    + spherical_area(&a, &b, &b_new)
+                    + spherical_area(&a, &b_new, &a_new);
+                (a, a_new, turn_before) = (b, b_new, turns[i]);
+            }
         }
     }
 }

@@ -1,14 +1,16 @@
 //! Internal viscosity: what resists motion of the centreline and rotation of the edges.
 //!
 //! The damping is internal, so it does not resist a translation: one vertex is grounded, which for a balanced force is the
-//! exact solution with that vertex at rest, and the mean velocity is then removed.
+//! exact solution with that vertex at rest, and the mean velocity is then removed. Several components are grounded each, and get the
+//! velocity of each by their drag (`drag.rs`).
 
 use serde::{Deserialize, Serialize};
 use topo_sparse::{SparseCholesky, SparseError};
 
 use crate::contact::{ContactPairs, KnownPairs};
+use crate::drag::{Drag, DragCorrection};
 use crate::friction::Friction;
-use crate::{Chain, RodState};
+use crate::{Chain, Layout, RodState};
 
 /// Mobility of the centreline: turns forces f into velocities v, the three components at once.
 ///
@@ -27,6 +29,7 @@ pub struct CentrelineViscosity {
     rubbing: Vec<usize>,
     fixed: Vec<bool>,
     grounded: bool,
+    drag: Option<DragCorrection>,
     is_current: bool,
     n_patterns: u64,
     n_factorisations: u64,
@@ -62,7 +65,7 @@ impl CentrelineViscosity {
     ) -> Result<(), SparseError> {
         self.pairs = memory.pairs;
         if memory.has_pattern {
-            self.build_pattern(state.chain())?;
+            self.build_pattern(state)?;
             if friction.is_none() {
                 self.prepare(state, pairs, None)?;
             }
@@ -83,10 +86,22 @@ impl CentrelineViscosity {
             rubbing: Vec::new(),
             fixed,
             grounded,
+            drag: None,
             is_current: false,
             n_patterns: 0,
             n_factorisations: 0,
         }
+    }
+
+    /// The same with the drag on floating components of several.
+    pub(crate) fn with_drag(mut self, drag: Option<Drag>) -> Self {
+        self.drag = drag.map(|drag| DragCorrection::new(drag, 1));
+        self
+    }
+
+    /// The drag on floating components, if there are several.
+    pub(crate) fn drag(&self) -> Option<&DragCorrection> {
+        self.drag.as_ref()
     }
 
     /// How often a matrix was factorised.
@@ -123,7 +138,7 @@ impl CentrelineViscosity {
             if rubs {
                 self.pairs.renew(state, pairs, none());
             }
-            self.build_pattern(state.chain())?;
+            self.build_pattern(state)?;
         }
         Ok(())
     }
@@ -138,7 +153,6 @@ impl CentrelineViscosity {
         pairs: &ContactPairs,
         friction: Option<Friction>,
     ) -> Result<(), SparseError> {
-        let chain = state.chain();
         let rubs = friction.is_some();
         self.keep_pattern(state, pairs, rubs)?;
         if self.is_current && !rubs {
@@ -147,18 +161,20 @@ impl CentrelineViscosity {
         let Some(solver) = self.solver.as_mut() else {
             return Ok(());
         };
-        let stiffness = 1.0 / chain.rest_length();
         let values = solver.values_mut();
         values.fill(0.0);
-        for j in 0..chain.n_edges() {
-            let (a, b) = (j, chain.edge_end(j));
-            couple(
-                values,
-                &self.fixed,
-                (self.diagonal[a], self.diagonal[b], self.next[j]),
-                (a, b),
-                stiffness,
-            );
+        for chain in state.components() {
+            let stiffness = 1.0 / chain.rest_length();
+            for j in chain.edges() {
+                let (a, b) = (j, chain.edge_end(j));
+                couple(
+                    values,
+                    &self.fixed,
+                    (self.diagonal[a], self.diagonal[b], self.next[j]),
+                    (a, b),
+                    stiffness,
+                );
+            }
         }
         if let Some(friction) = friction {
             // both lists ascend; the active pairs are a part of the known ones
@@ -182,26 +198,36 @@ impl CentrelineViscosity {
                 values[self.diagonal[i]] = 1.0;
             }
         }
-        if self.grounded {
-            values[self.diagonal[0]] += stiffness;
+        match &self.drag {
+            Some(several) => {
+                let grounds = several.drag().grounds();
+                grounds.for_each(|(i, ground)| values[self.diagonal[i]] += ground);
+            }
+            None if self.grounded => values[self.diagonal[0]] += 1.0 / state.rest_length(),
+            None => {}
         }
         self.n_factorisations += 1;
         self.is_current = true;
-        solver.factor()
+        solver.factor()?;
+        if let Some(several) = &mut self.drag {
+            several.prepare(solver);
+        }
+        Ok(())
     }
 
-    fn build_pattern(&mut self, chain: Chain) -> Result<(), SparseError> {
-        let n = chain.n_vertices();
-        let mut pattern: Vec<(u32, u32)> = (0..chain.n_edges())
-            .map(|j| (j as u32, chain.edge_end(j) as u32))
-            .collect();
+    fn build_pattern(&mut self, layout: &Layout) -> Result<(), SparseError> {
+        let n = layout.n_vertices();
+        let edges = || {
+            let chains = layout.components().iter();
+            chains.flat_map(|chain| chain.edges().map(|j| (j, chain.edge_end(j))))
+        };
+        let mut pattern: Vec<(u32, u32)> = edges().map(|(a, b)| (a as u32, b as u32)).collect();
         pattern.extend(self.pairs.list());
         let solver = SparseCholesky::new(n, &pattern)?;
         let slot = |i: usize, j: usize| solver.slot(i, j).unwrap_or_default();
         self.diagonal = (0..n).map(|i| slot(i, i)).collect();
-        self.next = (0..chain.n_edges())
-            .map(|j| slot(j, chain.edge_end(j)))
-            .collect();
+        self.next = vec![0; layout.n_edges()];
+        edges().for_each(|(a, b)| self.next[a] = slot(a, b));
         self.rubbing.clear();
         let pairs = self.pairs.list().iter();
         self.rubbing
@@ -212,8 +238,8 @@ impl CentrelineViscosity {
     }
 
     /// Turns forces into velocities, component-major 3 × n; entries of held vertices come in as their prescribed velocity.
-    pub fn solve(&mut self, chain: Chain, couplings: &[(u32, u32, f64)], v: &mut [f64]) {
-        let n = chain.n_vertices();
+    pub fn solve(&mut self, layout: &Layout, couplings: &[(u32, u32, f64)], v: &mut [f64]) {
+        let n = layout.n_vertices();
         if !self.grounded {
             let held: Vec<[f64; 3]> = (0..n)
                 .map(|i| {
@@ -224,10 +250,13 @@ impl CentrelineViscosity {
                     }
                 })
                 .collect();
-            let stiffness = 1.0 / chain.rest_length();
-            let chain =
-                (0..chain.n_edges()).map(|j| (j as u32, chain.edge_end(j) as u32, stiffness));
-            for (i, j, c) in chain.chain(couplings.iter().copied()) {
+            let along = |chain: &Chain| {
+                let (chain, stiffness) = (*chain, 1.0 / chain.rest_length());
+                let edges = chain.edges();
+                edges.map(move |j| (j as u32, chain.edge_end(j) as u32, stiffness))
+            };
+            let edges = layout.components().iter().flat_map(along);
+            for (i, j, c) in edges.chain(couplings.iter().copied()) {
                 for (a, b) in [(i as usize, j as usize), (j as usize, i as usize)] {
                     if self.fixed[a] && !self.fixed[b] {
                         for k in 0..3 {
@@ -240,8 +269,13 @@ impl CentrelineViscosity {
         if let Some(solver) = self.solver.as_mut() {
             solver.solve_in_place(v, 3);
         }
-        if self.grounded {
-            remove_mean(v, n);
+        match &self.drag {
+            Some(several) => {
+                several.correct(v);
+                several.drag().keep_centroid(v);
+            }
+            None if self.grounded => remove_mean(v, n),
+            None => {}
         }
     }
 }
@@ -271,15 +305,18 @@ pub(crate) fn remove_mean(v: &mut [f64], n: usize) {
 }
 
 /// u·K v of two component-major displacements or velocities.
-pub fn centreline_form(chain: Chain, u: &[f64], v: &[f64]) -> f64 {
-    let n = chain.n_vertices();
-    let mut sum = 0.0;
-    for j in 0..chain.n_edges() {
-        let b = chain.edge_end(j);
-        let along = |w: &[f64], k: usize| w[k * n + b] - w[k * n + j];
-        sum += (0..3).map(|k| along(u, k) * along(v, k)).sum::<f64>();
-    }
-    sum / chain.rest_length()
+pub fn centreline_form(layout: &Layout, u: &[f64], v: &[f64]) -> f64 {
+    let n = layout.n_vertices();
+    let of = |chain: &Chain| {
+        let mut sum = 0.0;
+        for j in chain.edges() {
+            let b = chain.edge_end(j);
+            let along = |w: &[f64], k: usize| w[k * n + b] - w[k * n + j];
+            sum += (0..3).map(|k| along(u, k) * along(v, k)).sum::<f64>();
+        }
+        sum / chain.rest_length()
+    };
+    layout.components().iter().map(of).sum()
 }
 
 /// u·M_θ w of edge rotations, with c_i the cosine of the turning angle at vertex i.
@@ -287,15 +324,15 @@ pub fn centreline_form(chain: Chain, u: &[f64], v: &[f64]) -> f64 {
 /// ```math
 /// w \cdot M_\theta w = \frac{\eta}{2 l_0} \sum_i |w_i t_i - w_{i-1} t_{i-1}|^2
 /// ```
-pub fn twist_form(chain: Chain, cosine: impl Fn(usize) -> f64, u: &[f64], w: &[f64]) -> f64 {
-    let sum: f64 = chain
-        .interior()
-        .map(|i| {
+pub fn twist_form(layout: &Layout, cosine: impl Fn(usize) -> f64, u: &[f64], w: &[f64]) -> f64 {
+    let of = |chain: &Chain| {
+        let terms = chain.interior().map(|i| {
             let before = chain.edge_before(i);
             u[before] * w[before] + u[i] * w[i] - cosine(i) * (u[before] * w[i] + u[i] * w[before])
-        })
-        .sum();
-    sum / (2.0 * chain.rest_length())
+        });
+        terms.sum::<f64>() / (2.0 * chain.rest_length())
+    };
+    layout.components().iter().map(of).sum()
 }
 
 /// Twist viscosity, optionally with a multiple of the twist stiffness: solves (M_θ + s H_θ) w = q, a (cyclic) tridiagonal system.
@@ -343,61 +380,46 @@ impl TwistViscosity {
     /// Makes a matrix again, as [`prepare`](Self::prepare), where one was remembered.
     pub(crate) fn recall(
         &mut self,
-        chain: Chain,
+        layout: &Layout,
         cosine: &[f64],
         stiffness: f64,
         memory: Option<u64>,
     ) -> Result<(), SparseError> {
         if let Some(n_factorisations) = memory {
-            self.prepare(chain, cosine, stiffness)?;
+            self.prepare(layout, cosine, stiffness)?;
             self.n_factorisations = n_factorisations;
         }
         Ok(())
     }
 
-    /// Assembles and factorises M_θ + `stiffness` Σ_i (w_i − w_{i−1})².
+    /// Assembles and factorises M_θ + `stiffness` Σ_i (w_i − w_{i−1})². Of several components, `stiffness` is that of the first; it
+    /// is inverse to the natural length of an edge.
     ///
     /// # Errors
     /// [`SparseError`] when the matrix cannot be factorised.
     pub fn prepare(
         &mut self,
-        chain: Chain,
+        layout: &Layout,
         cosine: &[f64],
         stiffness: f64,
     ) -> Result<(), SparseError> {
         if self.solver.is_none() {
-            let n = chain.n_edges();
-            let pattern: Vec<(u32, u32)> = chain
-                .interior()
-                .map(|i| (chain.edge_before(i) as u32, i as u32))
-                .collect();
-            let solver = SparseCholesky::new(n, &pattern)?;
-            self.diagonal = (0..n)
-                .map(|j| solver.slot(j, j).unwrap_or_default())
-                .collect();
-            self.next = (0..chain.n_vertices())
-                .map(|i| {
-                    if chain.interior().contains(&i) {
-                        solver.slot(chain.edge_before(i), i).unwrap_or_default()
-                    } else {
-                        0
-                    }
-                })
-                .collect();
-            self.solver = Some(solver);
+            self.build_pattern(layout)?;
         }
         let Some(solver) = self.solver.as_mut() else {
             return Ok(());
         };
-        let half = 0.5 / chain.rest_length();
         let values = solver.values_mut();
         values.fill(0.0);
-        for i in chain.interior() {
-            let (a, b) = (chain.edge_before(i), i);
-            values[self.diagonal[a]] += half + stiffness;
-            values[self.diagonal[b]] += half + stiffness;
-            if !self.fixed[a] && !self.fixed[b] {
-                values[self.next[i]] -= half * cosine[i] + stiffness;
+        for (chain, stiffness) in stiffnesses(layout, stiffness) {
+            let half = 0.5 / chain.rest_length();
+            for i in chain.interior() {
+                let (a, b) = (chain.edge_before(i), i);
+                values[self.diagonal[a]] += half + stiffness;
+                values[self.diagonal[b]] += half + stiffness;
+                if !self.fixed[a] && !self.fixed[b] {
+                    values[self.next[i]] -= half * cosine[i] + stiffness;
+                }
             }
         }
         for (j, &fixed) in self.fixed.iter().enumerate() {
@@ -413,14 +435,32 @@ impl TwistViscosity {
         solver.factor()
     }
 
+    fn build_pattern(&mut self, layout: &Layout) -> Result<(), SparseError> {
+        let joints = || {
+            let chains = layout.components().iter();
+            chains.flat_map(|chain| chain.interior().map(|i| (chain.edge_before(i), i)))
+        };
+        let n = layout.n_edges();
+        let pattern: Vec<(u32, u32)> = joints().map(|(a, b)| (a as u32, b as u32)).collect();
+        let solver = SparseCholesky::new(n, &pattern)?;
+        let slot = |a: usize, b: usize| solver.slot(a, b).unwrap_or_default();
+        self.diagonal = (0..n).map(|j| slot(j, j)).collect();
+        self.next = vec![0; layout.n_vertices()];
+        joints().for_each(|(a, b)| self.next[b] = slot(a, b));
+        self.solver = Some(solver);
+        Ok(())
+    }
+
     /// Turns torques into rotation rates; entries of held edges come in as their prescribed rate.
-    pub fn solve(&mut self, chain: Chain, cosine: &[f64], stiffness: f64, w: &mut [f64]) {
-        let half = 0.5 / chain.rest_length();
+    pub fn solve(&mut self, layout: &Layout, cosine: &[f64], stiffness: f64, w: &mut [f64]) {
         if self.fixed.iter().any(|&f| f) {
-            for i in chain.interior() {
-                for (a, b) in [(chain.edge_before(i), i), (i, chain.edge_before(i))] {
-                    if self.fixed[a] && !self.fixed[b] {
-                        w[b] += (half * cosine[i] + stiffness) * w[a];
+            for (chain, stiffness) in stiffnesses(layout, stiffness) {
+                let half = 0.5 / chain.rest_length();
+                for i in chain.interior() {
+                    for (a, b) in [(chain.edge_before(i), i), (i, chain.edge_before(i))] {
+                        if self.fixed[a] && !self.fixed[b] {
+                            w[b] += (half * cosine[i] + stiffness) * w[a];
+                        }
                     }
                 }
             }
@@ -429,4 +469,12 @@ impl TwistViscosity {
             solver.solve_in_place(w, 1);
         }
     }
+}
+
+/// Each component with its stiffness of a joint, by that of the first one.
+fn stiffnesses(layout: &Layout, first: f64) -> impl Iterator<Item = (&Chain, f64)> {
+    let chains = layout.components();
+    let rest_length = chains.first().map_or(0.0, Chain::rest_length);
+    let of = move |chain: &Chain| first * (rest_length / chain.rest_length());
+    chains.iter().map(move |chain| (chain, of(chain)))
 }

@@ -252,6 +252,29 @@ mod tests {
         assert!((ropelength / std::f64::consts::TAU - 1.0).abs() < 1e-5);
     }
 
+    /// Rings of radius 2 chained at a right angle so that each runs through the middle of the other: thickness 1, ropelength 8π of
+    /// both; apart they are bounded by their own radius or by half their distance.
+    #[test]
+    fn val_thickness_of_chained_and_of_apart_rings() {
+        let flat = circle(800, 2.0);
+        let upright = |shift: f64| {
+            let turned = flat
+                .vertices()
+                .iter()
+                .map(|v| V::new(v.x + shift, 0.0, v.y));
+            Polyline::new(turned.collect(), true).expect("a circle")
+        };
+        for (shift, expected) in [(2.0, 1.0), (5.0, 0.5), (40.0, 2.0), (1.0, 0.5)] {
+            let found = thickness_of_all(&[flat.clone(), upright(shift)]);
+            assert!((found.tau - expected).abs() < 1e-4, "{shift}: {found:?}");
+        }
+        assert_eq!(
+            thickness_of_all(std::slice::from_ref(&flat)),
+            thickness(&flat)
+        );
+        assert!(thickness_of_all(&[]).tau.is_infinite());
+    }
+
     #[test]
     fn a_curve_that_crosses_itself_has_no_thickness() {
         let at = |u: f64| V::new(u.sin(), (2.0 * u).sin(), 0.0);

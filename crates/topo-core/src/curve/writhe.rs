@@ -1,6 +1,7 @@
 //! Writhe and average crossing number of polygons, exact up to rounding.
 
 use std::f64::consts::PI;
+use std::ops::Range;
 
 use nalgebra::Vector3;
 
@@ -62,6 +63,42 @@ pub fn average_crossing_number(vertices: &[V], closed: bool) -> f64 {
     sum_over_pairs(vertices, closed, f64::abs) / PI
 }
 
+/// Gauss integral of two curves, each given by its vertices and whether it is closed: of two closed ones their linking number, exact
+/// up to rounding.
+///
+/// ```math
+/// Lk = \frac{1}{4\pi} \oint\!\oint \frac{(\mathrm{d}r_1 \times \mathrm{d}r_2) \cdot (r_1 - r_2)}{|r_1 - r_2|^3}
+///    = \frac{1}{4\pi} \sum_{i, j} \Omega_{ij}
+/// ```
+///
+/// Ω_ij and its sign are those of [`writhe`]: two right-handed crossings are one link. A pair of edges that meet gets the share 0.
+///
+/// # Validation
+/// `val_linking_numbers_of_torus_links`, `linking_of_open_curves_is_the_gauss_integral`
+///
+/// # References
+/// [klenin2000]
+///
+/// [klenin2000]: https://doi.org/10.1002/1097-0282(20001015)54:5%3C307::AID-BIP20%3E3.0.CO;2-Y
+pub fn linking(a: (&[V], bool), b: (&[V], bool)) -> f64 {
+    let both: Vec<V> = a.0.iter().chain(b.0).copied().collect();
+    if let Some(scaled) = within_range(&both, &both) {
+        let (x, y) = scaled.split_at(a.0.len());
+        return linking((x, a.1), (y, b.1));
+    }
+    let n_edges = |(x, closed): (&[V], bool)| x.len().saturating_sub(usize::from(!closed));
+    let (n, m) = (n_edges(a), n_edges(b));
+    if n == 0 || m == 0 {
+        return 0.0;
+    }
+    let x = a.0;
+    let edges = (0..n).map(|i| [x[i], x[(i + 1) % x.len()]]);
+    let sum: f64 = edges
+        .map(|edge| sum_over_edges(edge, b.0, 0..m, &|half| half))
+        .sum();
+    sum / (2.0 * PI)
+}
+
 /// Sum over all pairs of edges that share no vertex of `weight` of half their signed solid angle.
 fn sum_over_pairs(vertices: &[V], closed: bool, weight: impl Fn(f64) -> f64) -> f64 {
     let n = vertices.len();
@@ -69,22 +106,11 @@ fn sum_over_pairs(vertices: &[V], closed: bool, weight: impl Fn(f64) -> f64) -> 
     if n_edges < 3 {
         return 0.0;
     }
-    let extent = vertices
-        .iter()
-        .map(|v| (v - vertices[0]).amax())
-        .fold(0.0, f64::max);
-    if !(1e-40..1e40).contains(&extent) && extent > 0.0 && extent.is_finite() {
-        // Products of six lengths would leave the range of f64.
-        let scaled: Vec<V> = vertices
-            .iter()
-            .map(|v| (v - vertices[0]) / extent)
-            .collect();
+    if let Some(scaled) = within_range(vertices, vertices) {
         return sum_over_pairs(&scaled, closed, weight);
     }
     let mut total = 0.0;
     for i in 0..n_edges - 2 {
-        let (p, q) = (vertices[i], vertices[(i + 1) % n]);
-        let e = q - p;
         // The first and the last edge of a closed curve share a vertex, as do those of a curve just cut.
         let joined = closed || vertices[0] == vertices[n - 1];
         let end = if joined && i == 0 {
@@ -92,35 +118,55 @@ fn sum_over_pairs(vertices: &[V], closed: bool, weight: impl Fn(f64) -> f64) -> 
         } else {
             n_edges
         };
-        let mut a = vertices[i + 2] - p;
-        let mut d = vertices[i + 2] - q;
-        let (mut a_norm, mut d_norm) = (a.norm(), d.norm());
-        let mut row = 0.0;
-        for j in i + 2..end {
-            let next = vertices[if j + 1 == n { 0 } else { j + 1 }];
-            let (b, c) = (next - p, next - q);
-            let (b_norm, c_norm) = (b.norm(), c.norm());
-            let triple = a.dot(&e.cross(&(b - a)));
-            if triple != 0.0 {
-                let ac = a.dot(&c);
-                let first = a_norm * b_norm * c_norm
-                    + a.dot(&b) * c_norm
-                    + b.dot(&c) * a_norm
-                    + ac * b_norm;
-                let second = a_norm * c_norm * d_norm
-                    + ac * d_norm
-                    + c.dot(&d) * a_norm
-                    + a.dot(&d) * c_norm;
-                row += weight(-angle(
-                    triple * (first + second),
-                    first * second - triple * triple,
-                ));
-            }
-            (a, a_norm, d, d_norm) = (b, b_norm, c, c_norm);
-        }
-        total += row;
+        let edge = [vertices[i], vertices[(i + 1) % n]];
+        total += sum_over_edges(edge, vertices, i + 2..end, &weight);
     }
     total
+}
+
+/// Sum over `edges` of the curve through `vertices` of `weight` of half the signed solid angle of each with an edge of its own or
+/// of another curve, which shares no vertex with them.
+#[inline]
+fn sum_over_edges(
+    [p, q]: [V; 2],
+    vertices: &[V],
+    edges: Range<usize>,
+    weight: &impl Fn(f64) -> f64,
+) -> f64 {
+    let n = vertices.len();
+    let e = q - p;
+    let mut a = vertices[edges.start] - p;
+    let mut d = vertices[edges.start] - q;
+    let (mut a_norm, mut d_norm) = (a.norm(), d.norm());
+    let mut row = 0.0;
+    for j in edges {
+        let next = vertices[if j + 1 == n { 0 } else { j + 1 }];
+        let (b, c) = (next - p, next - q);
+        let (b_norm, c_norm) = (b.norm(), c.norm());
+        let triple = a.dot(&e.cross(&(b - a)));
+        if triple != 0.0 {
+            let ac = a.dot(&c);
+            let first =
+                a_norm * b_norm * c_norm + a.dot(&b) * c_norm + b.dot(&c) * a_norm + ac * b_norm;
+            let second =
+                a_norm * c_norm * d_norm + ac * d_norm + c.dot(&d) * a_norm + a.dot(&d) * c_norm;
+            row += weight(-angle(
+                triple * (first + second),
+                first * second - triple * triple,
+            ));
+        }
+        (a, a_norm, d, d_norm) = (b, b_norm, c, c_norm);
+    }
+    row
+}
+
+/// Vertices scaled about the first of `origin` where products of six of its lengths would leave the range of f64.
+fn within_range(vertices: &[V], origin: &[V]) -> Option<Vec<V>> {
+    let centre = *origin.first()?;
+    let from_centre = origin.iter().map(|v| (v - centre).amax());
+    let extent = from_centre.fold(0.0, f64::max);
+    let leaves = !(1e-40..1e40).contains(&extent) && extent > 0.0 && extent.is_finite();
+    leaves.then(|| vertices.iter().map(|v| (v - centre) / extent).collect())
 }
 
 /// `y.atan2(x)`, by its series where most pairs lie.
@@ -278,6 +324,59 @@ mod tests {
         };
         // Half the solid angle of the pair tends to pi: one crossing, whose sign is over x under = x cross y > 0.
         assert!((pair - 1.0).abs() < 1e-3, "{pair}");
+    }
+
+    /// The two circles of the torus link T(2, 2k) wind k times around each other, right-handedly for this torus.
+    #[test]
+    fn val_linking_numbers_of_torus_links() {
+        let strand = |windings: f64, start: f64, n: usize| -> Vec<V> {
+            let point = |i: usize| {
+                let t = 2.0 * PI * i as f64 / n as f64;
+                let u = windings * t + start;
+                let r = 2.0 + u.cos();
+                V::new(r * t.cos(), r * t.sin(), -u.sin())
+            };
+            (0..n).map(point).collect()
+        };
+        for windings in [-3.0, -1.0, 0.0, 1.0, 2.0] {
+            let (a, b) = (strand(windings, 0.0, 90), strand(windings, PI, 70));
+            let found = linking((&a, true), (&b, true));
+            assert!((found - windings).abs() < 1e-12, "{found} of {windings}");
+            let other = linking((&b, true), (&a, true));
+            assert!((found - other).abs() < 1e-13);
+            for scale in [1e-120, 1e90] {
+                let [a, b] = [&a, &b].map(|x| x.iter().map(|v| v * scale).collect::<Vec<V>>());
+                let again = linking((&a, true), (&b, true));
+                assert!((found - again).abs() < 1e-12);
+            }
+            // a reversed partner links the other way round
+            let reversed: Vec<V> = b.iter().rev().copied().collect();
+            let back = linking((&a, true), (&reversed, true));
+            assert!((found + back).abs() < 1e-12);
+        }
+        assert_eq!(linking((&[], true), (&[V::x(), V::y()], false)), 0.0);
+    }
+
+    #[test]
+    fn linking_of_open_curves_is_the_gauss_integral() {
+        let whole = torus_knot(2.0, 3.0, 40);
+        let (a, b) = (whole[..15].to_vec(), whole[18..33].to_vec());
+        let integral = |m: usize| {
+            let mut sum = 0.0;
+            for (p, r) in (0..14).flat_map(|i| (0..14).map(move |j| (i, j))) {
+                let (e, f) = (a[p + 1] - a[p], b[r + 1] - b[r]);
+                for k in 0..m * m {
+                    let (s, t) = ((k % m) as f64 + 0.5, (k / m) as f64 + 0.5);
+                    let d = a[p] + e * (s / m as f64) - b[r] - f * (t / m as f64);
+                    sum += e.cross(&f).dot(&d) / d.norm().powi(3) / (m * m) as f64;
+                }
+            }
+            sum / (4.0 * PI)
+        };
+        let (coarse, fine) = (integral(12), integral(24));
+        let extrapolated = fine + (fine - coarse) / 3.0;
+        let found = linking((&a, false), (&b, false));
+        assert_relative_eq!(found, extrapolated, max_relative = 2e-6);
     }
 
     #[test]

@@ -190,6 +190,7 @@ impl File {
                 twist: None,
                 contact: rod.contact,
                 friction: rod.friction,
+                ..RodParameters::default()
             },
             imperfection: rod.imperfection,
             seed: rod.seed,

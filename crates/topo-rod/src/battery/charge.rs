@@ -6,8 +6,8 @@ use topo_core::{Phase, Schedule, StopReason, positive};
 use super::RodBattery;
 use super::hooks::RunHooks;
 use super::phase::{Course, Finished, RodPhaseRun};
-use super::record::{Recorder, RunRecord, Scales};
-use crate::{Ends, RodError, RodState};
+use super::record::{PhaseReport, Recorder, RunRecord, Scales};
+use crate::{RodEnds, RodError, RodState};
 
 /// How long a rod is charged and how often it is sampled.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -68,7 +68,7 @@ impl RodBattery {
     ) -> Result<ChargedRod, RodError> {
         settings.checked()?;
         let state = self.start.clone();
-        let mut model = self.model(&state, Ends::default())?;
+        let mut model = self.model(&state, RodEnds::default())?;
         model.start(&state)?;
         let scales = Scales::of(&state);
         let outputs = Schedule::log_spaced(
@@ -80,6 +80,7 @@ impl RodBattery {
         let course = Course {
             phase: Phase::Charge,
             until: settings.duration * scales.time,
+            opened: None,
             release: None,
         };
         let system = (model, state);
@@ -88,22 +89,32 @@ impl RodBattery {
         let Finished {
             mut record, state, ..
         } = run.finish(stop, hooks)?;
-        let report = &mut record.report;
-        let drift = report.own.link_drift;
-        if let Some(drift) = drift.filter(|d| *d > self.guards.link_drift) {
-            tracing::error!(drift, "the linking number of a closed rod has drifted");
-            report.stop = StopReason::Failed {
-                why: topo_core::Rejection::Fatal {
-                    what: "Tw + Wr of the closed rod drifted: strands have crossed",
-                },
-            };
-        }
+        self.check_links(&mut record.report);
         Ok(ChargedRod {
             battery: self.clone(),
             density: self.energy_density(&state),
             state,
             record,
         })
+    }
+
+    /// Fails a phase in which a linking number has drifted: Tw + Wr of a closed component, or that of two of them.
+    pub(super) fn check_links(&self, report: &mut PhaseReport) {
+        let most = self.guards.link_drift;
+        let (own, pairs) = (report.own.link_drift, &report.own.linking);
+        let failed = |what| StopReason::Failed {
+            why: topo_core::Rejection::Fatal { what },
+        };
+        if let Some(drift) = own.filter(|d| *d > most) {
+            tracing::error!(drift, "the linking number of a closed rod has drifted");
+            report.stop = failed("Tw + Wr of the closed rod drifted: strands have crossed");
+        } else if let Some(pair) = pairs.iter().find(|pair| pair.drift > most) {
+            tracing::error!(
+                drift = pair.drift,
+                "the linking number of two rods has drifted"
+            );
+            report.stop = failed("the linking number of two rods drifted: strands have crossed");
+        }
     }
 }
 

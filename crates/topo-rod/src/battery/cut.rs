@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::{ChargedRod, RodError, RodState, smoothed_density};
+use crate::{ChargedRod, RodError, RodState};
 
 /// How the site of a cut is chosen.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -11,8 +11,15 @@ pub enum CutSite {
     /// The vertex of largest elastic energy density, smoothed over π h.
     #[default]
     MaximumEnergyDensity,
-    /// The vertex nearest to a given s/L in [0, 1).
+    /// The vertex nearest to a given s/L in [0, 1); of a link, on its first component.
     At(f64),
+    /// The vertex nearest to a given s/L in [0, 1) of a component of a link.
+    On {
+        /// Number of the component, from 0.
+        component: usize,
+        /// s/L along it.
+        at: f64,
+    },
 }
 
 /// A local maximum of the smoothed energy density.
@@ -20,10 +27,17 @@ pub enum CutSite {
 pub struct CutCandidate {
     /// Vertex to cut.
     pub vertex: usize,
-    /// Its position s/L.
+    /// Its position s/L, along its component.
     pub at: f64,
+    /// Number of its component, from 0.
+    #[serde(default, skip_serializing_if = "is_first")]
+    pub component: usize,
     /// Smoothed density per area, in E_b.
     pub density: f64,
+}
+
+fn is_first(component: &usize) -> bool {
+    *component == 0
 }
 
 /// Local maxima of a smoothed density on a closed rod within `share` of the largest, largest first.
@@ -49,11 +63,31 @@ pub fn cut_candidates(smoothed: &[f64], rest_length: f64, share: f64) -> Vec<Cut
             kept.push(CutCandidate {
                 vertex: i,
                 at: i as f64 / n as f64,
+                component: 0,
                 density: smoothed[i],
             });
         }
     }
     kept
+}
+
+/// As [`cut_candidates`], of all closed components of `state` together, with its smoothed density.
+fn candidates_of(state: &RodState, smoothed: &[f64], share: f64) -> Vec<CutCandidate> {
+    let mut all: Vec<CutCandidate> = Vec::new();
+    for (component, chain) in state.components().iter().enumerate() {
+        if chain.is_closed() {
+            let own = cut_candidates(&smoothed[chain.vertices()], chain.rest_length(), share);
+            all.extend(own.into_iter().map(|found| CutCandidate {
+                vertex: chain.first() + found.vertex,
+                component,
+                ..found
+            }));
+        }
+    }
+    let largest = all.iter().map(|c| c.density).fold(0.0, f64::max);
+    all.retain(|c| c.density >= (1.0 - share) * largest);
+    all.sort_by(|a, b| b.density.total_cmp(&a.density));
+    all
 }
 
 /// A rod that has just been cut.
@@ -65,46 +99,54 @@ pub struct CutRod {
     pub state: RodState,
     /// Vertex of the closed rod that was doubled.
     pub vertex: usize,
-    /// Its position s/L.
+    /// Its position s/L, along its component.
     pub at: f64,
+    /// The component that was opened, from 0.
+    pub component: usize,
 }
 
 impl CutRod {
-    /// The charged rod cut at s/L = `at`.
+    /// The charged rod with a component cut at s/L = `at`.
     ///
     /// # Errors
-    /// The rod must be closed and `at` in [0, 1).
-    pub(crate) fn new(charged: &ChargedRod, at: f64) -> Result<Self, RodError> {
+    /// The component must exist and be closed, and `at` be in [0, 1).
+    pub(crate) fn new(charged: &ChargedRod, component: usize, at: f64) -> Result<Self, RodError> {
         if !(0.0..1.0).contains(&at) {
             return Err(RodError::CutSite { at });
         }
         let closed = charged.state();
-        let n = closed.n_vertices();
+        let chain = closed.chain(component)?;
+        let n = chain.n_vertices();
         let vertex = (at * n as f64).round() as usize % n;
         Ok(Self {
             charged: charged.clone(),
-            state: closed.cut_at(vertex)?,
-            vertex,
+            state: closed.cut_at(chain.first() + vertex)?,
+            vertex: chain.first() + vertex,
             at: vertex as f64 / n as f64,
+            component,
         })
     }
 }
 
 impl ChargedRod {
-    /// Sites within `share` of the largest smoothed density, largest first.
+    /// Sites within `share` of the largest smoothed density, largest first; of a link, on all of its components.
     pub fn cut_candidates(&self, share: f64) -> Vec<CutCandidate> {
-        let l0 = self.state().rest_length();
-        cut_candidates(&smoothed_density(self.density(), l0, true), l0, share)
+        let state = self.state();
+        candidates_of(state, &state.smoothed(self.density()), share)
     }
 
-    /// Cuts the rod.
+    /// Cuts the rod, or one component of a link.
     ///
     /// # Errors
     /// A site that is not on the rod.
     pub fn cut(&self, site: CutSite) -> Result<CutRod, RodError> {
         match site {
-            CutSite::MaximumEnergyDensity => CutRod::new(self, self.cut_candidates(0.0)[0].at),
-            CutSite::At(at) => CutRod::new(self, at),
+            CutSite::MaximumEnergyDensity => {
+                let found = self.cut_candidates(0.0)[0];
+                CutRod::new(self, found.component, found.at)
+            }
+            CutSite::At(at) => CutRod::new(self, 0, at),
+            CutSite::On { component, at } => CutRod::new(self, component, at),
         }
     }
 }
@@ -129,6 +171,35 @@ mod tests {
             [20, 110]
         );
         assert_eq!(cut_candidates(&vec![1.0; 30], 0.25, 0.03).len(), 1);
+    }
+
+    /// Of a link, the components compete: sites come from all that are closed, with their own vertex and s/L.
+    #[test]
+    fn candidates_are_those_of_all_closed_components() {
+        let ring = |n: usize| {
+            let at = |k: usize| {
+                let u = std::f64::consts::TAU * k as f64 / n as f64;
+                nalgebra::Vector3::new(u.cos(), u.sin(), 0.0)
+            };
+            let curve = topo_core::Polyline::new((0..n).map(at).collect(), true).unwrap();
+            RodState::new(&curve, 0.25 * n as f64, 0.0).unwrap()
+        };
+        let rods = [ring(80), ring(60).cut_at(0).unwrap(), ring(100)];
+        let state = RodState::link(&rods).unwrap();
+        let mut density = vec![1.0; state.n_vertices()];
+        (density[20], density[100], density[80 + 61 + 25]) = (2.95, 9.0, 3.0);
+        let found = candidates_of(&state, &density, 0.03);
+        let sites: Vec<_> = found
+            .iter()
+            .map(|c| (c.component, c.vertex, c.at))
+            .collect();
+        assert_eq!(sites, [(2, 166, 0.25), (0, 20, 0.25)]);
+        assert_eq!(candidates_of(&state, &density, 0.01).len(), 1);
+        // smoothing stops at the ends of a component
+        density.fill(1.0);
+        density[0] = 21.0;
+        let smoothed = state.smoothed(&density);
+        assert!(smoothed[79] > 1.5 && smoothed[80..].iter().all(|w| (w - 1.0).abs() < 1e-12));
     }
 
     /// Distances are the shorter way round: flanks reach π/0.25 = 12.6 vertices, across the seam as anywhere.

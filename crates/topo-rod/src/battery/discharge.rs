@@ -7,7 +7,7 @@ use super::cut::CutRod;
 use super::hooks::RunHooks;
 use super::phase::{Course, Finished, RodPhaseRun};
 use super::record::{Recorder, RunRecord, Scales};
-use crate::{Ends, RodError};
+use crate::{Ends, RodEnds, RodError};
 
 /// How far a discharge is followed and how often it is sampled.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -22,7 +22,7 @@ pub struct DischargeSettings {
     pub first_output: f64,
     /// Output times per decade.
     pub outputs_per_decade: f64,
-    /// How the ends of the open rod are held and loaded.
+    /// How the ends of the open rod are held and loaded; of a link, those of the component that was cut.
     pub ends: Ends,
 }
 
@@ -61,8 +61,10 @@ impl DischargeSettings {
 /// A discharge: where the rod was cut, what the cut removed, and how the rest was released.
 #[derive(Debug, Clone)]
 pub struct Discharge {
-    /// Place of the cut, s/L.
+    /// Place of the cut, s/L along its component.
     pub at: f64,
+    /// The component that was cut, from 0.
+    pub component: usize,
     /// Energy per part that the cut itself removed (contact included), in E_0.
     pub removed: f64,
     /// Elastic energy just before the cut, in E_0: released shares count from it, and what the cut removes counts as released
@@ -97,7 +99,9 @@ impl CutRod {
         let has_twist = battery.parameters().twist.is_some();
         settings.checked(has_twist)?;
         let state = self.state.clone();
-        let mut model = battery.model(&state, settings.ends)?;
+        let mut model =
+            battery.model(&state, RodEnds::Each(vec![(self.component, settings.ends)]))?;
+        model.set_joined(Some(self.component));
         model.set_cyclic(true);
         let parts = model.parts().clone();
         let before = &self.charged.record().report.ledger;
@@ -111,19 +115,25 @@ impl CutRod {
             settings.first_output * scales.time,
             settings.outputs_per_decade,
         )?;
-        let recorder = Recorder::new(scales, battery.tube(), has_twist, &parts, outputs);
+        let recorder = Recorder::new(scales, battery.tube(), has_twist, &parts, outputs)
+            .of_cut(self.component);
         let course = Course {
             phase: Phase::Discharge,
             until: settings.longest * scales.time,
+            opened: Some(self.component),
             release: Some([after_cut, (1.0 - settings.until_released) * after_cut]),
         };
         let of = (settings, before);
         let system = (model, state);
         let mut run = RodPhaseRun::begin(battery, course, system, recorder, &of, hooks)?;
         let stop = run.go(hooks)?;
-        let Finished { record, parted, .. } = run.finish(stop, hooks)?;
+        let Finished {
+            mut record, parted, ..
+        } = run.finish(stop, hooks)?;
+        battery.check_links(&mut record.report);
         Ok(Discharge {
             at: self.at,
+            component: self.component,
             removed: (closed - opened) / scales.energy,
             start: start / scales.energy,
             after_cut: after_cut / scales.energy,

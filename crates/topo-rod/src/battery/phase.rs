@@ -19,6 +19,8 @@ pub(super) struct Course {
     pub phase: Phase,
     /// Longest time, in η/E_b.
     pub until: f64,
+    /// The component that a cut has opened.
+    pub opened: Option<usize>,
     /// Elastic energy just after a cut and at which its discharge is over, per area.
     pub release: Option<[f64; 2]>,
 }
@@ -66,13 +68,13 @@ impl RodPhaseRun {
                 SCHEMA,
                 &case,
                 |(simulation, reached, memory, seen, beside): &Saved| {
-                    if !reached.is_sound(state.chain()) {
+                    if !reached.is_sound(&state) {
                         return Some("the rod is another one");
                     }
                     let n_dof = topo_core::Model::n_dof(&model);
                     let flaw = simulation.flaw(&control, course.until, n_dof);
                     flaw.or_else(|| memory.flaw(&model, reached))
-                        .or_else(|| recorder.flaw(seen, state.chain(), simulation.time()))
+                        .or_else(|| recorder.flaw(seen, &state, simulation.time()))
                         .or_else(|| beside.flaw(simulation.time()))
                 },
             )?;
@@ -131,7 +133,12 @@ impl RodPhaseRun {
 
     /// One step, unless the phase is over.
     fn advance(&mut self) -> Option<Ended> {
-        let Course { until, release, .. } = self.course;
+        let Course {
+            until,
+            release,
+            opened,
+            ..
+        } = self.course;
         let goal = release.map(|[_, goal]| goal);
         let recorder = &mut self.recorder;
         let (parts, diameter) = (recorder.parts.clone(), recorder.tube.contact_diameter);
@@ -142,7 +149,11 @@ impl RodPhaseRun {
             if goal.is_some_and(|goal| parts.elastic_of(s.ledger) <= goal) {
                 return Some("released".to_owned());
             }
-            parts_now = is_joined && tips_have_parted(s.state, diameter, window);
+            parts_now = is_joined
+                && opened.is_some_and(|c| {
+                    let chain = &s.state.components()[c];
+                    tips_have_parted(s.state, chain, diameter, window)
+                });
             parts_now.then(|| "tips parted".to_owned())
         };
         let mut see = |s: &Sample<'_, RodState>| recorder.look(s);

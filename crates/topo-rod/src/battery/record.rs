@@ -5,12 +5,13 @@ use serde::{Deserialize, Serialize};
 use topo_core::{DischargeCurve, Ledger, PhaseExtension, Sample, Schedule, StopReason};
 use topo_core::{reference_energy, reference_time};
 
+use super::links::{Linking, Links};
 use super::simulation::RodSimulation;
 use super::tips::tips_have_parted;
 use crate::contact::ContactPairs;
 use crate::energy::{RodParts, StoredEnergy};
 use crate::model::{CHANNELS, WorkAccount};
-use crate::{Chain, RodState, Tube};
+use crate::{Layout, RodState, Tube};
 
 /// The rod at one output time.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -53,8 +54,11 @@ pub struct RodPhase {
     pub work: WorkAccount,
     /// Least distance of vertices of different strands over the contact diameter; none if none came in reach.
     pub min_distance_over_contact: Option<f64>,
-    /// Largest |Δ(Tw + Wr)| seen while closed, in turns; none for an open rod or one without twist.
+    /// Largest |Δ(Tw + Wr)| seen while closed, in turns; none for an open rod or one without twist. Of several components, that
+    /// of the closed one with the largest.
     pub link_drift: Option<f64>,
+    /// Linking numbers of each two closed components of several.
+    pub linking: Vec<Linking>,
 }
 
 impl PhaseExtension for RodPhase {
@@ -68,7 +72,11 @@ impl PhaseExtension for RodPhase {
 
     fn write_after<M: SerializeMap>(&self, _: f64, map: &mut M) -> Result<(), M::Error> {
         map.serialize_entry("min_distance_over_contact", &self.min_distance_over_contact)?;
-        map.serialize_entry("link_drift", &self.link_drift)
+        map.serialize_entry("link_drift", &self.link_drift)?;
+        if self.linking.is_empty() {
+            return Ok(());
+        }
+        map.serialize_entry("linking", &self.linking)
     }
 }
 
@@ -113,6 +121,10 @@ pub(super) struct Recorder {
     pub parts: RodParts,
     /// Values of the current step, kept so that no step allocates.
     stored: Vec<f64>,
+    /// The component that a cut has opened.
+    opened: Option<usize>,
+    /// Linking numbers of several components.
+    links: Links,
 }
 
 impl Recorder {
@@ -136,18 +148,26 @@ impl Recorder {
             has_twist,
             parts: parts.clone(),
             stored: Vec::with_capacity(parts.len()),
+            opened: None,
+            links: Links::default(),
         }
     }
 
-    /// What does not fit a phase that begins like this one, of a rod joined like `chain`, at `time`.
-    pub(super) fn flaw(&self, seen: &Seen, chain: Chain, time: f64) -> Option<&'static str> {
+    /// The same for a discharge after a cut of `component`.
+    pub(super) fn of_cut(mut self, component: usize) -> Self {
+        self.opened = Some(component);
+        self
+    }
+
+    /// What does not fit a phase that begins like this one, of a rod joined like `layout`, at `time`.
+    pub(super) fn flaw(&self, seen: &Seen, layout: &Layout, time: f64) -> Option<&'static str> {
         let (fresh, now) = (&self.seen, time / self.scales.time);
         let mut last = -1.0;
         let in_order = seen.samples.iter().all(|s| {
             let grows = s.time > last && s.time <= now;
             last = s.time;
             grows
-                && s.state.is_sound(chain)
+                && s.state.is_sound(layout)
                 && s.stored.len() == self.parts.len()
                 && s.stored.iter().chain(&s.dissipated).all(|x| x.is_finite())
         });
@@ -162,6 +182,7 @@ impl Recorder {
     pub(super) fn recall(&mut self, mut seen: Seen) {
         for sample in &mut seen.samples {
             sample.stored = StoredEnergy::new(self.parts.clone(), sample.stored.to_vec());
+            self.links.look(&sample.state, self.has_twist);
         }
         self.seen = seen;
     }
@@ -197,7 +218,10 @@ impl Recorder {
         let (books, scale) = (sample.ledger, self.scales.energy);
         let energies = stored(&self.parts, books, scale).collect();
         let (writhe, total_twist) = (state.writhe(), state.total_twist());
-        if state.is_closed() && self.has_twist {
+        if state.n_components() > 1 {
+            self.links.look(state, self.has_twist);
+            seen.link_drift = self.links.own_drift();
+        } else if state.is_closed() && self.has_twist {
             let link = writhe + total_twist;
             let start = *seen.link_start.get_or_insert(link);
             seen.link_drift = Some(seen.link_drift.unwrap_or(0.0).max((link - start).abs()));
@@ -206,8 +230,11 @@ impl Recorder {
             self.tube.contact_diameter.max(self.tube.friction_range),
             0.01,
         );
-        let parted = !state.is_closed()
-            && tips_have_parted(state, self.tube.contact_diameter, pairs.window().outer());
+        let parted = self.opened.is_some_and(|c| {
+            let (chain, window) = (&state.components()[c], pairs.window().outer());
+            tips_have_parted(state, chain, self.tube.contact_diameter, window)
+        });
+        pairs.set_joined(self.opened);
         pairs.set_cyclic(!parted);
         pairs.update(state);
         let touching =
@@ -250,6 +277,7 @@ impl Recorder {
                 work: model.work(),
                 min_distance_over_contact: Some(distance).filter(|d| d.is_finite()),
                 link_drift: self.seen.link_drift,
+                linking: self.links.linking(),
             },
         };
         RunRecord {

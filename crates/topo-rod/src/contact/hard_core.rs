@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::RodState;
+use crate::{Chain, RodState};
 
 /// A pair of neighbours along the rod, closer than their limit.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,7 +39,14 @@ impl Core {
     /// Pairs below their limit at `state`, ascending; those across the ends of an open rod are left out.
     pub(crate) fn find(state: &RodState, out: &mut Vec<CorePair>) {
         out.clear();
-        let (x, n, l0) = (state.vertices(), state.n_vertices(), state.rest_length());
+        for chain in state.components() {
+            Self::find_along(state.vertices(), chain, out);
+        }
+        out.sort_unstable_by_key(|p| (p.i, p.j));
+    }
+
+    fn find_along(x: &[Vector3<f64>], chain: &Chain, out: &mut Vec<CorePair>) {
+        let (first, n, l0) = (chain.first(), chain.n_vertices(), chain.rest_length());
         // on a rod much shorter than the spacing no pair is far enough apart
         let stride = ((SPACING / l0) as usize).clamp(1, n.max(1));
         let share = l0 * stride as f64;
@@ -51,21 +58,21 @@ impl Core {
             }
             let limit = SHARE * 2.0 * (0.5 * share * k as f64).sin();
             let square = limit * limit;
-            let last = if state.is_closed() { n } else { n - apart };
+            let last = if chain.is_closed() { n } else { n - apart };
             for i in (0..last).step_by(stride) {
                 let j = if i + apart < n {
                     i + apart
                 } else {
                     i + apart - n
                 };
-                let d = x[i] - x[j];
+                let d = x[first + i] - x[first + j];
                 let found = d.norm_squared();
                 if found < square {
                     let distance = found.sqrt().max(1e-9);
                     let sign = if i < j { 1.0 } else { -1.0 };
                     out.push(CorePair {
-                        i: i.min(j) as u32,
-                        j: i.max(j) as u32,
+                        i: (first + i.min(j)) as u32,
+                        j: (first + i.max(j)) as u32,
                         weight: share * share,
                         distance,
                         limit,
@@ -74,7 +81,6 @@ impl Core {
                 }
             }
         }
-        out.sort_unstable_by_key(|p| (p.i, p.j));
     }
 }
 
@@ -118,6 +124,18 @@ mod tests {
             let sum: f64 = pairs.iter().map(|p| p.weight).sum();
             assert!((sum / integral - 1.0).abs() < 0.1, "{sum} {integral}");
         }
+        // of a link, each component has its own
+        let curve =
+            |radius| Polyline::new(ring(radius).map(Vector3::from).collect(), true).unwrap();
+        let rods = [1.0, 0.45, 1.0].map(|r| RodState::new(&curve(r), length, 0.0).unwrap());
+        let mut behind = Vec::new();
+        Core::find(&RodState::link(&rods).unwrap(), &mut behind);
+        let moved = |p: &CorePair| (p.i - 64, p.j - 64, p.weight, p.normal);
+        let expected: Vec<_> = shrunk
+            .iter()
+            .map(|p| (p.i, p.j, p.weight, p.normal))
+            .collect();
+        assert_eq!(behind.iter().map(moved).collect::<Vec<_>>(), expected);
         let first = shrunk[0];
         let pulled = first.normal.dot(&Vector3::new(1.0, 0.0, 0.0));
         assert!(pulled > 0.0 && first.distance < first.limit);

@@ -19,7 +19,7 @@ pub struct ActivePair {
     pub distance: f64,
     /// (x_i − x_j)/r.
     pub normal: Vector3<f64>,
-    /// Whether W = 1: not neighbours along the rod by any measure.
+    /// Whether W = 1: not neighbours along the rod by any measure, as vertices of two components never are.
     pub strands: bool,
 }
 
@@ -38,6 +38,8 @@ pub struct ContactPairs {
     reach: f64,
     skin: f64,
     cyclic: bool,
+    /// The open component of several whose ends count as joined while `cyclic`.
+    joined: Option<usize>,
     candidates: Vec<Candidate>,
     reference: Vec<Vector3<f64>>,
     active: Vec<ActivePair>,
@@ -104,6 +106,7 @@ impl ContactPairs {
             reach,
             skin,
             cyclic: true,
+            joined: None,
             candidates: Vec::new(),
             reference: Vec::new(),
             active: Vec::new(),
@@ -195,6 +198,20 @@ impl ContactPairs {
             + self.active.capacity() * size_of::<ActivePair>()
     }
 
+    /// Names the component that a cut has opened, of several: `set_cyclic` is about its arclength alone. Without it, open components of
+    /// several have ends like any.
+    pub fn set_joined(&mut self, component: Option<usize>) {
+        if component != self.joined {
+            self.joined = component;
+            self.reference.clear();
+        }
+    }
+
+    /// Whether arclength along component `c` is counted the shorter way round.
+    pub(crate) fn is_cyclic_along(&self, state: &RodState, c: usize) -> bool {
+        is_cyclic(state, c, (self.cyclic, self.joined))
+    }
+
     /// Whether arclength is counted the shorter way round: always while closed, and after a cut until the tips have parted.
     pub fn set_cyclic(&mut self, cyclic: bool) {
         if cyclic != self.cyclic {
@@ -273,33 +290,32 @@ impl ContactPairs {
     }
 
     fn rebuild(&mut self, state: &RodState) {
-        let (x, n) = (state.vertices(), state.n_vertices());
-        let (l0, length, cyclic, window) = (
-            state.rest_length(),
-            state.length(),
-            self.cyclic,
-            self.window,
-        );
+        let (x, n, window) = (state.vertices(), state.n_vertices(), self.window);
         let within = self.reach + self.skin;
-        let stride = ((within / (2.0 * l0)).round() as usize).clamp(1, n.div_ceil(4));
-        let quadrature = |i: usize| {
-            if !state.is_closed() && (i == 0 || i + 1 == n) {
-                0.5 * l0
-            } else {
-                l0
-            }
+        let stride = (within / (2.0 * state.rest_length())).round() as usize;
+        let stride = stride.clamp(1, n.div_ceil(4));
+        let seam = (self.cyclic, self.joined);
+        let separation = |i: usize, j: usize| {
+            // vertices of two components are never neighbours
+            state.common_chain(i, j).map_or(f64::INFINITY, |chain| {
+                let cyclic = is_cyclic(state, state.component_of(i), seam);
+                arc_separation(i, j, chain.rest_length(), chain.length(), cyclic)
+            })
         };
+        let share = |i: usize| state.chain_of(i).share(i);
         let candidates = &mut self.candidates;
         candidates.clear();
+        // the closing edge of a link of several would be none of theirs
+        let closing = state.is_closed() && state.n_components() == 1;
         self.broad_phase
-            .for_each_pair(x, state.is_closed(), stride, within, |a, b| {
+            .for_each_pair(x, closing, stride, within, |a, b| {
                 for i in a * stride..((a + 1) * stride).min(n) {
                     for j in (b * stride).max(i + 1)..((b + 1) * stride).min(n) {
-                        let separation = arc_separation(i, j, l0, length, cyclic);
+                        let separation = separation(i, j);
                         if separation > window.inner()
                             && (x[i] - x[j]).norm_squared() < within * within
                         {
-                            let weight = quadrature(i) * quadrature(j) * window.weight(separation);
+                            let weight = share(i) * share(j) * window.weight(separation);
                             candidates.push(Candidate {
                                 i: i as u32,
                                 j: j as u32,
@@ -314,6 +330,15 @@ impl ContactPairs {
         self.reference.clear();
         self.reference.extend_from_slice(x);
         self.n_rebuilds += 1;
+    }
+}
+
+/// Whether arclength along component `c` is counted the shorter way round.
+#[inline]
+fn is_cyclic(state: &RodState, c: usize, (cyclic, joined): (bool, Option<usize>)) -> bool {
+    match state.components() {
+        [_] => cyclic,
+        several => several[c].is_closed() || cyclic && joined == Some(c),
     }
 }
 

@@ -3,7 +3,7 @@
 use nalgebra::Matrix3;
 
 use super::{At, EnergyTerm, Force, Stiffness};
-use crate::RodParameters;
+use crate::{Chain, RodParameters};
 
 /// Stretch energy of edges e_j of natural length l_0, with γ = E/E_b.
 ///
@@ -34,53 +34,62 @@ impl EnergyTerm for Stretch {
     }
 
     fn energy(&self, at: At<'_>) -> f64 {
-        let l0 = at.state.rest_length();
-        let sum: f64 = at
-            .geometry
-            .edge_length
-            .iter()
-            .map(|l| (l / l0 - 1.0).powi(2))
-            .sum();
-        0.5 * self.ratio * l0 * sum
+        let of = |chain: &Chain| {
+            let l0 = chain.rest_length();
+            let lengths = at.geometry.edge_length[chain.edges()].iter();
+            let sum: f64 = lengths.map(|l| (l / l0 - 1.0).powi(2)).sum();
+            0.5 * self.ratio * l0 * sum
+        };
+        at.state.components().iter().map(of).sum()
     }
 
     fn add_force(&self, at: At<'_>, force: &mut Force) -> f64 {
-        let (state, g, l0) = (at.state, at.geometry, at.state.rest_length());
-        let mut sum = 0.0;
-        for j in 0..state.n_edges() {
-            let strain = g.edge_length[j] / l0 - 1.0;
-            sum += strain * strain;
-            let tension = g.tangent[j] * (self.ratio * strain);
-            force.vertex[j] += tension;
-            force.vertex[state.edge_end(j)] -= tension;
+        let g = at.geometry;
+        let mut energy = 0.0;
+        for chain in at.state.components() {
+            let l0 = chain.rest_length();
+            let mut sum = 0.0;
+            for j in chain.edges() {
+                let strain = g.edge_length[j] / l0 - 1.0;
+                sum += strain * strain;
+                let tension = g.tangent[j] * (self.ratio * strain);
+                force.vertex[j] += tension;
+                force.vertex[chain.edge_end(j)] -= tension;
+            }
+            energy += 0.5 * self.ratio * l0 * sum;
         }
-        0.5 * self.ratio * l0 * sum
+        energy
     }
 
     fn add_stiffness(&self, at: At<'_>, stiffness: &mut Stiffness) {
-        let (state, g, l0) = (at.state, at.geometry, at.state.rest_length());
-        for j in 0..state.n_edges() {
-            let t = g.tangent[j];
-            // a rod under tension also resists turning; under compression that part is negative and left out
-            let across = (self.ratio * (g.edge_length[j] / l0 - 1.0) / g.edge_length[j]).max(0.0);
-            let along = self.ratio / l0 - across;
-            let block = t * t.transpose() * along + Matrix3::from_diagonal_element(across);
-            stiffness.diagonal[j] += block;
-            stiffness.diagonal[state.edge_end(j)] += block;
-            stiffness.next[j] -= block;
+        let g = at.geometry;
+        for chain in at.state.components() {
+            let l0 = chain.rest_length();
+            for j in chain.edges() {
+                let t = g.tangent[j];
+                // a rod under tension also resists turning; under compression that part is negative and left out
+                let across =
+                    (self.ratio * (g.edge_length[j] / l0 - 1.0) / g.edge_length[j]).max(0.0);
+                let along = self.ratio / l0 - across;
+                let block = t * t.transpose() * along + Matrix3::from_diagonal_element(across);
+                stiffness.diagonal[j] += block;
+                stiffness.diagonal[chain.edge_end(j)] += block;
+                stiffness.next[j] -= block;
+            }
         }
     }
 
     fn add_density(&self, at: At<'_>, density: &mut [f64]) {
-        let (state, l0) = (at.state, at.state.rest_length());
-        let of = |j: usize| 0.5 * self.ratio * (at.geometry.edge_length[j] / l0 - 1.0).powi(2);
-        let last = state.n_vertices() - 1;
-        for (i, w) in density.iter_mut().enumerate() {
-            *w += if state.interior().contains(&i) {
-                0.5 * (of(state.edge_before(i)) + of(i))
-            } else {
-                of(if i == last { last - 1 } else { 0 })
-            };
+        for chain in at.state.components() {
+            let (l0, last) = (chain.rest_length(), chain.last());
+            let of = |j: usize| 0.5 * self.ratio * (at.geometry.edge_length[j] / l0 - 1.0).powi(2);
+            for i in chain.vertices() {
+                density[i] += if chain.interior().contains(&i) {
+                    0.5 * (of(chain.edge_before(i)) + of(i))
+                } else {
+                    of(if i == last { last - 1 } else { i })
+                };
+            }
         }
     }
 }

@@ -31,9 +31,28 @@ fn crumpled(closed: bool) -> RodState {
     twisted
 }
 
+/// An open rod between two closed ones, all three in contact with each other.
+fn link() -> RodState {
+    let parts = [true, false, true].map(crumpled);
+    let mut link = RodState::link(&parts).unwrap();
+    let n = link.n_vertices();
+    let mut step = vec![0.0; 3 * n + link.n_edges()];
+    for (c, chain) in link.components().iter().enumerate() {
+        let by = Vector3::new(0.9, 0.4, 1.1) * c as f64;
+        for i in chain.vertices() {
+            (0..3).for_each(|k| step[k * n + i] = by[k]);
+        }
+    }
+    link.clone().moved_by(&step, true, 2, &mut link);
+    link
+}
+
 fn check(term: &dyn EnergyTerm, reach: f64, probe: f64) {
-    for closed in [true, false] {
-        let rod = crumpled(closed);
+    for (rod, closed) in [
+        (crumpled(true), true),
+        (crumpled(false), false),
+        (link(), true),
+    ] {
         let mut pairs = ContactPairs::new(reach, 0.3);
         pairs.set_cyclic(closed);
         let error = gradient_error(term, &rod, &mut pairs, probe);
@@ -80,6 +99,41 @@ fn contact_force_is_the_gradient() {
         1.7,
         2e-5,
     );
+}
+
+/// What strands of two components do to each other sums to zero, without and with a window that would keep near numbers apart.
+#[test]
+fn law_components_push_each_other_alike() {
+    let link = link();
+    let term = ContactEnergy {
+        stiffness: 20.0,
+        diameter: 1.7,
+    };
+    let mut pairs = ContactPairs::new(1.7, 0.3);
+    pairs.update(&link);
+    let between = |p: &&crate::contact::ActivePair| {
+        link.component_of(p.i as usize) != link.component_of(p.j as usize)
+    };
+    let crossing: Vec<_> = pairs.active().iter().filter(between).collect();
+    assert!(crossing.len() > 30 && crossing.iter().all(|p| p.strands));
+    let share = |i: u32| link.chain_of(i as usize).share(i as usize);
+    assert!(crossing.iter().all(|p| p.weight == share(p.i) * share(p.j)));
+    let mut force = Force::default();
+    force.reset(&link);
+    term.add_force(
+        At {
+            state: &link,
+            geometry: &Geometry::new(&link),
+            pairs: &pairs,
+        },
+        &mut force,
+    );
+    let chains = link.components().iter();
+    let net: Vec<Vector3<f64>> = chains
+        .map(|chain| force.vertex[chain.vertices()].iter().sum())
+        .collect();
+    assert!(net.iter().all(|f| f.norm() > 1.0), "{net:?}");
+    assert!((net[0] + net[1] + net[2]).norm() < 1e-12 * net[0].norm());
 }
 
 /// A rod pressed together along itself until its neighbours repel.

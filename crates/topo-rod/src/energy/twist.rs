@@ -1,7 +1,7 @@
 //! Twist energy.
 
 use super::{At, EnergyTerm, Force, Stiffness};
-use crate::RodParameters;
+use crate::{Chain, RodParameters};
 
 /// Twist energy, with stiffness α relative to bending; m_i is the integrated twist of vertex i, in radians.
 ///
@@ -43,23 +43,29 @@ impl EnergyTerm for Twist {
     }
 
     fn energy(&self, at: At<'_>) -> f64 {
-        let sum: f64 = at.state.twists().iter().map(|m| m * m).sum();
-        self.ratio * sum / (8.0 * at.state.rest_length())
+        let twists = at.state.twists();
+        let of = |chain: &Chain| {
+            let sum: f64 = twists[chain.vertices()].iter().map(|m| m * m).sum();
+            self.ratio * sum / (8.0 * chain.rest_length())
+        };
+        at.state.components().iter().map(of).sum()
     }
 
     fn add_force(&self, at: At<'_>, force: &mut Force) -> f64 {
-        let (state, g, m) = (at.state, at.geometry, at.state.twists());
-        for i in state.interior() {
-            let (before, after) = (state.edge_before(i), i);
-            let torque = self.torque(m[i], state.rest_length());
-            let pull = g.binormal[i] * (0.5 * torque);
-            let on_before = pull / g.edge_length[before];
-            let on_after = pull / g.edge_length[after];
-            force.vertex[before] += on_before;
-            force.vertex[i] += on_after - on_before;
-            force.vertex[state.edge_end(after)] -= on_after;
-            force.torque[before] += torque;
-            force.torque[after] -= torque;
+        let (g, m) = (at.geometry, at.state.twists());
+        for chain in at.state.components() {
+            for i in chain.interior() {
+                let (before, after) = (chain.edge_before(i), i);
+                let torque = self.torque(m[i], chain.rest_length());
+                let pull = g.binormal[i] * (0.5 * torque);
+                let on_before = pull / g.edge_length[before];
+                let on_after = pull / g.edge_length[after];
+                force.vertex[before] += on_before;
+                force.vertex[i] += on_after - on_before;
+                force.vertex[chain.edge_end(after)] -= on_after;
+                force.torque[before] += torque;
+                force.torque[after] -= torque;
+            }
         }
         self.energy(at)
     }
@@ -67,9 +73,12 @@ impl EnergyTerm for Twist {
     fn add_stiffness(&self, _at: At<'_>, _stiffness: &mut Stiffness) {}
 
     fn add_density(&self, at: At<'_>, density: &mut [f64]) {
-        let (l0, m) = (at.state.rest_length(), at.state.twists());
-        for i in at.state.interior() {
-            density[i] += self.ratio * m[i] * m[i] / (8.0 * l0 * l0);
+        let m = at.state.twists();
+        for chain in at.state.components() {
+            let l0 = chain.rest_length();
+            for i in chain.interior() {
+                density[i] += self.ratio * m[i] * m[i] / (8.0 * l0 * l0);
+            }
         }
     }
 }

@@ -181,6 +181,89 @@ fn law_edges_at_the_ends_of_an_open_rod_are_certified() {
     }
 }
 
+/// Two rods of 20 vertices each on circles far apart, but for edges `i` of the first and `j` of the second, which cross at a right angle.
+fn crossed_link(closed: [bool; 2], i: usize, j: usize) -> RodState {
+    let n = 20;
+    let centre = Vector3::new(0.0, 0.0, 40.0);
+    let circle = |height: f64| {
+        let at = move |k: usize| {
+            let u = TAU * k as f64 / n as f64;
+            Vector3::new(20.0 * u.cos(), 20.0 * u.sin(), height)
+        };
+        (0..n).map(at).collect::<Vec<_>>()
+    };
+    let (mut a, mut b) = (circle(0.0), circle(80.0));
+    a[i] = centre - Vector3::x();
+    a[(i + 1) % n] = centre + Vector3::x();
+    b[j] = centre + Vector3::new(0.3, -1.0, GAP);
+    b[(j + 1) % n] = centre + Vector3::new(0.3, 1.0, GAP);
+    let rod = |vertices, closed| {
+        let curve = Polyline::new(vertices, closed).unwrap();
+        RodState::new(&curve, 0.25 * curve.n_edges() as f64, 0.0).unwrap()
+    };
+    RodState::link(&[rod(a, closed[0]), rod(b, closed[1])]).unwrap()
+}
+
+/// An edge of one component that falls through any of another is refused, one that stops short is not: first and last edges, closed
+/// and open components, in and out of the reach of the list.
+#[test]
+fn law_edges_of_two_components_are_certified() {
+    let mut n_passed = 0;
+    for closed in [[true, true], [false, true], [true, false], [false, false]] {
+        for (i, j) in [(0, 0), (0, 18), (18, 0), (18, 18), (7, 11), (19, 19)] {
+            if (i == 19 || j == 19) && closed != [true, true] {
+                continue;
+            }
+            for reach in [0.5, 2.0, 60.0] {
+                let state = crossed_link(closed, i, j);
+                let n = state.n_vertices();
+                let falls = |by: f64| {
+                    let mut step = vec![0.0; 3 * n];
+                    for k in [j, (j + 1) % 20] {
+                        step[2 * n + 20 + k] = -by;
+                    }
+                    step
+                };
+                let through = falls(1.5 * GAP);
+                let pairs = unproved_of_link(&state, &through);
+                assert!(pairs.contains(&(i, 20 + j)));
+                let refused = certified(&state, &through, reach, true);
+                let Err(Rejection::Crossing { edges }) = refused else {
+                    panic!("edge {j} fell through edge {i}, reach {reach}, {closed:?}");
+                };
+                assert!(pairs.contains(&edges), "{edges:?}");
+                let short = falls(0.9 * GAP);
+                let passes = certified(&state, &short, reach, true).is_ok();
+                assert_eq!(passes, unproved_of_link(&state, &short).is_empty());
+                n_passed += usize::from(passes);
+            }
+        }
+    }
+    assert!(n_passed > 30, "{n_passed}");
+}
+
+/// As [`unproved`], with edges of two components never adjacent.
+fn unproved_of_link(state: &RodState, step: &[f64]) -> Vec<(usize, usize)> {
+    let (x, n) = (state.vertices(), state.n_vertices());
+    let moved = |i: usize| Vector3::new(step[i], step[n + i], step[2 * n + i]);
+    let edges = || state.components().iter().flat_map(|chain| chain.edges());
+    let mut found = Vec::new();
+    for (a, b) in edges().flat_map(|a| edges().filter(move |&b| b > a).map(move |b| (a, b))) {
+        let (p, q) = ([a, state.edge_end(a)], [b, state.edge_end(b)]);
+        if p.iter().any(|i| q.contains(i)) {
+            continue;
+        }
+        let relative = p
+            .iter()
+            .flat_map(|&i| q.map(|k| (moved(i) - moved(k)).norm()));
+        let relative = relative.fold(0.0, f64::max);
+        if relative >= segment_distance(&x[p[0]], &x[p[1]], &x[q[0]], &x[q[1]]) {
+            found.push((a, b));
+        }
+    }
+    found
+}
+
 /// The largest displacement, and where.
 #[test]
 fn the_largest_displacement_is_that_of_a_vertex() {

@@ -6,6 +6,7 @@ use topo_core::{Ledger, LinearlyImplicit, Rejection};
 use super::RodModel;
 use super::parts::CHANNELS;
 use crate::RodState;
+use crate::drag::DragCorrection;
 use crate::friction::friction_form;
 use crate::guard::RiseBudget;
 use crate::newton::NewtonTwist;
@@ -42,6 +43,16 @@ pub struct WorkAccount {
     pub friction_bytes: usize,
     /// Bytes held by matrices and factors of the centreline.
     pub matrix_bytes: usize,
+    /// Bytes held for further components: where they are, and what resists each as a whole.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub component_bytes: usize,
+    /// Solves for what resists each component as a whole.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub n_component_solves: usize,
+}
+
+fn is_zero(n: &usize) -> bool {
+    *n == 0
 }
 
 impl WorkAccount {
@@ -52,6 +63,7 @@ impl WorkAccount {
             self.twist_bytes,
             self.friction_bytes,
             self.matrix_bytes,
+            self.component_bytes,
         ];
         bytes.iter().sum::<usize>() as u64
     }
@@ -110,6 +122,9 @@ impl RodModel {
             Some(_) => self.n_term_evaluations,
             None => 0,
         };
+        let several = self.centreline.drag();
+        let per_factor = several.map_or(0, DragCorrection::n_columns) as u64;
+        let solves = self.centreline.n_factorisations() + 3 * self.newton.n_factorisations;
         let couplings = self.at.couplings.capacity() + self.accepted.couplings.capacity();
         let twist_matrices = self.rotation.as_ref().map_or(0, TwistViscosity::n_bytes)
             + self.newton_twist.as_ref().map_or(0, NewtonTwist::n_bytes);
@@ -127,6 +142,10 @@ impl RodModel {
             n_newton_factorisations: self.newton.n_factorisations,
             n_newton_patterns: self.newton.n_patterns,
             contact_bytes: self.pairs.n_bytes(),
+            component_bytes: several.map_or(0, DragCorrection::n_bytes)
+                + self.newton.n_component_bytes()
+                + self.n_layout_bytes,
+            n_component_solves: (per_factor * solves) as usize,
             matrix_bytes: 8 * (self.centreline.n_nonzeros() + self.newton.n_nonzeros()),
         }
     }
@@ -138,14 +157,14 @@ impl RodModel {
         a.total = self.at.energies.iter().sum();
         a.cosine.clone_from(&self.at.geometry.cosine);
         a.couplings.clone_from(&self.at.couplings);
-        if self.ends.is_driven() {
+        if self.is_driven {
             a.force.clone_from(&self.at.force);
         }
     }
 
     /// Work of loads and of prescribed motions over a step, with the mean of the forces at its two ends.
     pub(super) fn external_work(&self, from: &RodState, step: &[f64], dt: f64) -> f64 {
-        if !self.ends.is_driven() {
+        if !self.is_driven {
             return 0.0;
         }
         let n = self.n_vertices;
@@ -158,18 +177,20 @@ impl RodModel {
             }
         };
         let mut work = 0.0;
-        for (end, motion) in self.ends.motions.iter().enumerate() {
-            work += Vector3::from(motion.force).dot(&moved([0, n - 1][end]));
-            work += motion.torque * turned([0, self.n_edges - 1][end]);
+        for placed in &self.ends {
+            for (end, motion) in placed.ends.motions.iter().enumerate() {
+                work += Vector3::from(motion.force).dot(&moved(placed.vertices()[end]));
+                work += motion.torque * turned(placed.edges()[end]);
+            }
         }
         // what a hold must supply: viscous resistance less the rod's own pull
         for &(i, _) in &self.held_vertices {
-            let mut resistance = Vector3::zeros();
-            let viscous = 1.0 / (from.rest_length() * dt);
+            let (mut resistance, chain) = (Vector3::zeros(), from.chain_of(i));
+            let viscous = 1.0 / (chain.rest_length() * dt);
             for j in [i.checked_sub(1), Some(i)]
                 .into_iter()
                 .flatten()
-                .filter(|&j| j < self.n_edges)
+                .filter(|j| chain.edges().contains(j))
             {
                 let other = if j == i { i + 1 } else { i - 1 };
                 resistance += (moved(i) - moved(other)) * viscous;
@@ -187,11 +208,12 @@ impl RodModel {
             work += (resistance - pull).dot(&moved(i));
         }
         for &(j, _) in &self.held_edges {
-            let half = 0.5 / (from.rest_length() * dt);
+            let chain = from.chain_of(j);
+            let half = 0.5 / (chain.rest_length() * dt);
             let mut resistance = 0.0;
             for i in [j, j + 1]
                 .into_iter()
-                .filter(|i| from.interior().contains(i))
+                .filter(|i| chain.interior().contains(i))
             {
                 let other = if i == j { j - 1 } else { j + 1 };
                 let cosine = 0.5 * (self.accepted.cosine[i] + self.at.geometry.cosine[i]);
@@ -231,21 +253,26 @@ impl RodModel {
         smoothed.clone_from(&self.rate_change);
         let g = self.resolvent_of(dt, &mut smoothed);
         let a = &self.rate_change;
-        let (n, chain) = (self.n_vertices, from.chain());
+        let (n, layout) = (self.n_vertices, from.layout());
         let rubbed = |u: &[f64], v: &[f64]| {
             let (old, new) = (&self.accepted.couplings, &self.at.couplings);
             0.5 * (friction_form(old, u, v, n) + friction_form(new, u, v, n))
         };
-        let centreline = |u: &[f64], v: &[f64]| centreline_form(chain, u, v) + rubbed(u, v);
+        let dragged = |u: &[f64], v: &[f64]| {
+            let several = self.centreline.drag();
+            several.map_or(0.0, |several| several.drag().form(u, v))
+        };
+        let smooth = |u: &[f64], v: &[f64]| centreline_form(layout, u, v) + dragged(u, v);
+        let centreline = |u: &[f64], v: &[f64]| smooth(u, v) + rubbed(u, v);
         let friction = rubbed(step, step);
-        let slow = centreline_form(chain, step, step) + friction;
+        let slow = smooth(step, step) + friction;
         let factor = 1.0 + excess(slow, g, a, &smoothed, centreline);
         self.ledger.dissipate(0, (slow - friction) * factor / dt);
         self.ledger.dissipate(2, friction * factor / dt);
         if self.twist.is_some() {
             let (old, new) = (&self.accepted.cosine, &self.at.geometry.cosine);
             let cosine = |i: usize| 0.5 * (old[i] + new[i]);
-            let twist = |u: &[f64], v: &[f64]| twist_form(chain, cosine, u, v);
+            let twist = |u: &[f64], v: &[f64]| twist_form(layout, cosine, u, v);
             let turned = 3 * n..;
             let slow = twist(&step[turned.clone()], &step[turned.clone()]);
             let factor = 1.0 + excess(slow, g, &a[turned.clone()], &smoothed[turned], twist);

@@ -52,9 +52,9 @@ impl LinearlyImplicit for RodModel {
         if let (Some(newton), Some(twist)) = (self.newton_twist.as_mut(), self.twist) {
             newton
                 .prepare(
-                    state.chain(),
+                    state,
                     &self.at.geometry.cosine,
-                    g_dt * twist.torque(1.0, state.rest_length()),
+                    g_dt * twist.torque(1.0, state.components()[0].rest_length()),
                 )
                 .map_err(|e| unsolvable(e, "the twist matrix"))?;
         }

@@ -136,18 +136,17 @@ impl RodModel {
             couplings,
             ..memory.accepted
         };
-        let chain = state.chain();
         self.centreline
             .recall(state, &self.pairs, self.friction, memory.mobility)?;
         if let Some(rotation) = &mut self.rotation {
             let n_factorisations = memory.n_twist_factorisations;
-            rotation.recall(chain, &self.accepted.cosine, 0.0, n_factorisations)?;
+            rotation.recall(state, &self.accepted.cosine, 0.0, n_factorisations)?;
         }
         if !self.newton.recall(state, memory.newton)? {
             return Ok(false);
         }
         if let (Some(newton), Some(twist)) = (&mut self.newton_twist, memory.newton_twist) {
-            newton.recall(chain, twist)?;
+            newton.recall(state, twist)?;
         }
         self.frozen = memory.frozen;
         self.rises = memory.rises;

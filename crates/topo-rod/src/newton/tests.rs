@@ -8,7 +8,7 @@ use super::*;
 use crate::Geometry;
 use crate::energy::{At, Bend, ContactEnergy, EnergyTerm, Stretch};
 use crate::friction::{Friction, friction_form};
-use crate::viscosity::{centreline_form, twist_form};
+use crate::viscosity::{CentrelineViscosity, centreline_form, twist_form};
 
 /// A crumpled rod of 40 edges with strands in contact.
 fn crumpled(closed: bool) -> RodState {
@@ -40,7 +40,8 @@ fn at(n: usize, entries: &[(usize, [f64; 3])]) -> Vec<f64> {
 fn val_forms_of_resistance_by_hand() {
     let line = (0..=8).map(|k| Vector3::new(0.5 * f64::from(k), 0.0, 0.0));
     let line = Polyline::new(line.collect(), false).unwrap();
-    let chain = RodState::new(&line, 4.0, 0.0).unwrap().chain();
+    let rod = RodState::new(&line, 4.0, 0.0).unwrap();
+    let chain = rod.layout();
     let (u, v) = (
         at(9, &[(3, [1.0, 2.0, 3.0])]),
         at(9, &[(4, [2.0, 0.0, 1.0])]),
@@ -69,35 +70,40 @@ fn val_forms_of_resistance_by_hand() {
 /// (M_θ + s H_θ) w = q on the edges that are free, those held turn as prescribed.
 #[test]
 fn law_rotations_solve_their_equations() {
-    for closed in [true, false] {
+    let alone = |closed| RodState::link(&[crumpled(closed)]).unwrap();
+    for state in [alone(true), alone(false), link(50.0)] {
+        let (layout, geometry) = (state.layout(), Geometry::new(&state));
+        let n = state.n_edges();
         for held in [vec![], vec![0, 13]] {
-            let state = crumpled(closed);
-            let (chain, geometry) = (state.chain(), Geometry::new(&state));
-            let is_held = |j: &usize| held.contains(j);
-            let fixed: Vec<bool> = (0..40).map(|j| is_held(&j)).collect();
-            let given: Vec<f64> = (0..40).map(|j| (1.7 * f64::from(j)).sin()).collect();
-            let (s, half) = (0.8, 0.5 / state.rest_length());
-            // M_θ + s H_θ and M_θ alone, of the definition
+            let stands = |j: usize| held.contains(&j) || state.unused_edges().any(|k| k == j);
+            let fixed: Vec<bool> = (0..n).map(stands).collect();
+            let given: Vec<f64> = (0..n).map(|j| (1.7 * j as f64).sin()).collect();
+            let s = 0.8;
+            // M_θ + s H_θ and M_θ alone, of the definition; s is that of edges as long as those of the first component
             let apply = |w: &[f64], s: f64| {
-                let mut out = vec![0.0; 40];
-                for i in state.interior() {
-                    let (a, c) = (state.edge_before(i), geometry.cosine[i]);
-                    out[a] += half * (w[a] - c * w[i]) + s * (w[a] - w[i]);
-                    out[i] += half * (w[i] - c * w[a]) + s * (w[i] - w[a]);
+                let mut out = vec![0.0; n];
+                for chain in state.components() {
+                    let half = 0.5 / chain.rest_length();
+                    let s = s * state.components()[0].rest_length() / chain.rest_length();
+                    for i in chain.interior() {
+                        let (a, c) = (chain.edge_before(i), geometry.cosine[i]);
+                        out[a] += half * (w[a] - c * w[i]) + s * (w[a] - w[i]);
+                        out[i] += half * (w[i] - c * w[a]) + s * (w[i] - w[a]);
+                    }
                 }
                 out
             };
             let mut viscosity = TwistViscosity::new(fixed.clone());
-            viscosity.prepare(chain, &geometry.cosine, s).unwrap();
+            viscosity.prepare(layout, &geometry.cosine, s).unwrap();
             let mut w = given.clone();
-            viscosity.solve(chain, &geometry.cosine, s, &mut w);
-            let mut newton = NewtonTwist::new(fixed);
-            newton.prepare(chain, &geometry.cosine, s).unwrap();
+            viscosity.solve(layout, &geometry.cosine, s, &mut w);
+            let mut newton = NewtonTwist::new(fixed.clone());
+            newton.prepare(layout, &geometry.cosine, s).unwrap();
             let mut step = given.clone();
             newton.solve(&mut step);
             let (found, stepped, right) = (apply(&w, s), apply(&step, s), apply(&given, 0.0));
-            for j in 0..40 {
-                if held.contains(&j) {
+            for j in 0..n {
+                if fixed[j] {
                     assert_eq!((w[j], step[j]), (given[j], given[j]));
                 } else {
                     assert!((found[j] - given[j]).abs() < 1e-8, "{j}: {}", found[j]);
@@ -111,11 +117,19 @@ fn law_rotations_solve_their_equations() {
 /// (M + s H) out = M r at the vertices that are free, with M = η K + η_f C; those held move as prescribed.
 #[test]
 fn law_newton_steps_solve_their_equations() {
-    for (closed, held) in [(true, vec![]), (false, vec![]), (false, vec![0, 1, 20])] {
-        let state = crumpled(closed);
-        let (n, l0) = (state.n_vertices(), state.rest_length());
+    let alone = |closed| RodState::link(&[crumpled(closed)]).unwrap();
+    for (state, held) in [
+        (alone(true), vec![]),
+        (alone(false), vec![]),
+        (alone(false), vec![0, 1, 20]),
+        (link(1.9), vec![]),
+        (link(50.0), vec![]),
+        (link(1.9), vec![50, 51, 52]),
+    ] {
+        let n = state.n_vertices();
         // the tips of the open one are still in one place
         let mut pairs = ContactPairs::new(1.7, 0.3);
+        pairs.set_joined(Some(1));
         pairs.update(&state);
         let geometry = Geometry::new(&state);
         let place = At {
@@ -140,11 +154,18 @@ fn law_newton_steps_solve_their_equations() {
         friction.couplings(pairs.active(), &mut couplings);
         assert!(couplings.len() > 10);
         let s = 0.03;
-        let mut newton = NewtonMatrix::new((0..n).map(|i| held.contains(&i)).collect());
+        let fixed: Vec<bool> = (0..n).map(|i| held.contains(&i)).collect();
+        let drag = Drag::of(&state, &fixed, 3.0);
+        let mut given: Vec<f64> = (0..3 * n).map(|k| (0.9 * k as f64).sin()).collect();
+        if let Some(drag) = &drag {
+            // the centroid of a link does not move
+            drag.keep_centroid(&mut given);
+        }
+        let floats = |chain: &&Chain| !chain.vertices().any(|i| held.contains(&i));
+        let mut newton = NewtonMatrix::new(fixed.clone()).with_drag(drag);
         newton
             .prepare(&state, &pairs, &stiffness, s, &couplings)
             .unwrap();
-        let given: Vec<f64> = (0..3 * n).map(|k| (0.9 * k as f64).sin()).collect();
         let mut found = given.clone();
         newton.solve(&mut found);
         let vectors = |flat: &[f64]| -> Vec<Vector3<f64>> {
@@ -155,7 +176,10 @@ fn law_newton_steps_solve_their_equations() {
         let (u, r) = (vectors(&found), vectors(&given));
         let resistance = |v: &[Vector3<f64>]| {
             let mut out = vec![Vector3::zeros(); n];
-            let edges = (0..state.n_edges()).map(|j| (j, state.edge_end(j), 1.0 / l0));
+            let edges = state.components().iter().flat_map(|chain| {
+                let viscous = 1.0 / chain.rest_length();
+                chain.edges().map(move |j| (j, chain.edge_end(j), viscous))
+            });
             let rubbing = couplings
                 .iter()
                 .map(|&(i, j, c)| (i as usize, j as usize, c));
@@ -163,10 +187,21 @@ fn law_newton_steps_solve_their_equations() {
                 out[i] += (v[i] - v[j]) * c;
                 out[j] += (v[j] - v[i]) * c;
             }
+            let chains = state
+                .components()
+                .iter()
+                .filter(|_| state.n_components() > 1);
+            for chain in chains.filter(floats) {
+                let mean = v[chain.vertices()].iter().sum::<Vector3<f64>>();
+                let mean = mean / chain.n_vertices() as f64;
+                let each = 3.0 * chain.length() / state.length().powi(2);
+                let each = mean * (each / chain.n_vertices() as f64);
+                chain.vertices().for_each(|i| out[i] += each);
+            }
             out
         };
         let (left, right) = (resistance(&u), resistance(&r));
-        let elastic = stiffness.product(pairs.active(), &u);
+        let elastic = stiffness.product(&state, pairs.active(), &u);
         for i in 0..n {
             if held.contains(&i) {
                 assert_eq!(u[i], r[i]);
@@ -175,7 +210,72 @@ fn law_newton_steps_solve_their_equations() {
                 assert!(error < 1e-9 * right[i].norm().max(1.0), "{i}: {error:.1e}");
             }
         }
-        let mean: Vector3<f64> = u.iter().sum();
-        assert!(!held.is_empty() || mean.norm() < 1e-10, "the rod drifts");
+        let of = |chain: &Chain| {
+            let sum: Vector3<f64> = u[chain.vertices()].iter().sum();
+            sum * (chain.length() / chain.n_vertices() as f64)
+        };
+        let mean: Vector3<f64> = state.components().iter().map(of).sum();
+        assert!(!held.is_empty() || mean.norm() < 1e-9, "the rod drifts");
+    }
+}
+
+/// A closed rod, an open one and a closed one of other edges, `apart` from each other.
+fn link(apart: f64) -> RodState {
+    let other = crumpled(true).centreline().unwrap();
+    let mut parts = [
+        crumpled(true),
+        crumpled(false),
+        RodState::new(&other, 20.0, 0.4).unwrap(),
+    ];
+    for (k, rod) in parts.iter_mut().enumerate() {
+        let by = Vector3::new(0.9, 0.5, 1.1) * (k as f64 * apart);
+        *rod = rod.with_vertices(rod.vertices().iter().map(|x| x + by).collect());
+    }
+    RodState::link(&parts).unwrap()
+}
+
+/// (η K + η_f C + Z) v = f of a link, rubbing and apart, without and with held vertices; net forces on components move them.
+#[test]
+fn law_velocities_of_a_link_solve_their_equations() {
+    for (apart, held, ratio) in [
+        (1.9, vec![], 1.0),
+        (50.0, vec![], 1e-3),
+        (1.9, vec![3, 44], 30.0),
+    ] {
+        let state = link(apart);
+        let n = state.n_vertices();
+        let mut pairs = ContactPairs::new(1.7, 0.3);
+        pairs.set_joined(Some(1));
+        pairs.update(&state);
+        let friction = Friction {
+            ratio: 0.7,
+            range: 1.5,
+        };
+        let mut couplings = Vec::new();
+        friction.couplings(pairs.active(), &mut couplings);
+        let fixed: Vec<bool> = (0..n).map(|i| held.contains(&i)).collect();
+        let drag = Drag::of(&state, &fixed, ratio).unwrap();
+        let mut mobility = CentrelineViscosity::new(fixed.clone()).with_drag(Some(drag.clone()));
+        let mut force: Vec<f64> = (0..3 * n).map(|k| (0.9 * k as f64).sin() + 0.3).collect();
+        if held.is_empty() {
+            crate::viscosity::remove_mean(&mut force, n);
+        }
+        let mut v = force.clone();
+        mobility.prepare(&state, &pairs, Some(friction)).unwrap();
+        mobility.solve(&state, &couplings, &mut v);
+        // the power of v against each unit motion is the force there
+        for place in 0..3 * n {
+            let mut unit = vec![0.0; 3 * n];
+            unit[place] = 1.0;
+            let resisted = centreline_form(&state, &unit, &v)
+                + friction_form(&couplings, &unit, &v, n)
+                + drag.form(&unit, &v);
+            if fixed[place % n] {
+                assert_eq!(v[place], force[place]);
+            } else {
+                let error = (resisted - force[place]).abs();
+                assert!(error < 1e-9, "{apart} {place}: {error:.1e}");
+            }
+        }
     }
 }

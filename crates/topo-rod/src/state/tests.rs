@@ -107,7 +107,8 @@ fn a_cut_doubles_its_vertex_and_starts_there() {
     for k in 0..13 {
         assert_eq!(open.vertices()[k], rod.vertices()[(5 + k) % 12]);
     }
-    assert_eq!((open.interior(), rod.interior()), (1..12, 0..12));
+    let interior = [&open, &rod].map(|state| state.components()[0].interior());
+    assert_eq!(interior, [1..12, 0..12]);
     assert_eq!((rod.edge_before(0), rod.edge_end(11)), (11, 0));
     assert_eq!((open.edge_before(4), open.edge_end(11)), (3, 12));
     assert_eq!((open.end_to_end(), rod.end_to_end()), (0.0, 0.0));
@@ -116,6 +117,56 @@ fn a_cut_doubles_its_vertex_and_starts_there() {
     let mut apart = open.clone();
     apart.vertices[12] += Vector3::new(0.0, 3.0, 4.0);
     assert!((apart.end_to_end() - 5.0).abs() < 1e-12);
+}
+
+/// A link keeps its rods as they are; a cut opens one of them and moves those behind it up; each can be taken out again.
+#[test]
+fn a_link_is_its_rods_one_after_the_other() {
+    let (a, b, c) = (ring(12, 6.0, 0.7), ring(20, 12.0, 0.1), ring(9, 4.0, -0.3));
+    let link = RodState::link([&a, &b, &c]).unwrap();
+    let firsts: Vec<usize> = link.components().iter().map(Chain::first).collect();
+    assert_eq!(
+        (firsts, link.n_vertices(), link.n_edges()),
+        (vec![0, 12, 32], 41, 41)
+    );
+    assert!(
+        (link.length() - 22.0).abs() < 1e-12 && (link.rest_length() - 22.0 / 41.0).abs() < 1e-12
+    );
+    assert_eq!((link.edge_before(12), link.edge_end(31)), (31, 12));
+    assert_eq!(
+        [0, 11, 12, 31, 32, 40].map(|i| link.component_of(i)),
+        [0, 0, 1, 1, 2, 2]
+    );
+    let open = link.cut_at(15).unwrap();
+    let chains = open.components();
+    assert_eq!((chains[1].n_vertices(), chains[1].n_edges()), (21, 20));
+    assert_eq!(
+        (chains[2].first(), open.n_vertices(), open.n_edges()),
+        (33, 42, 42)
+    );
+    assert_eq!(open.unused_edges().collect::<Vec<_>>(), [32]);
+    assert!(!open.is_interior(12) && !open.is_interior(32) && open.is_interior(33));
+    let alone = b.cut_at(3).unwrap();
+    let taken = open.component(1).unwrap();
+    assert_eq!(taken.vertices(), alone.vertices());
+    assert_eq!(
+        (taken.twists(), taken.layout()),
+        (alone.twists(), alone.layout())
+    );
+    for (k, rod) in [(0, &a), (2, &c)] {
+        let kept = open.component(k).unwrap();
+        assert_eq!(
+            (kept.vertices(), kept.twists()),
+            (rod.vertices(), rod.twists())
+        );
+        assert_eq!(open.writhe_of(k).unwrap(), rod.writhe());
+        assert_eq!(open.total_twist_of(k).unwrap(), rod.total_twist());
+    }
+    assert!(open.component(3).is_err() && open.linking(1, 1).is_err() && open.cut_at(14).is_err());
+    assert!(RodState::link([]).is_err() && link.centreline().is_err());
+    assert_eq!(link.centrelines().unwrap().len(), 3);
+    // one rod is no link
+    assert_eq!(RodState::link([&a]).unwrap().layout(), a.layout());
 }
 
 #[test]

@@ -7,11 +7,11 @@ use tempfile::TempDir;
 use topo_core::{Interrupt, Model, load_checkpoint, save_checkpoint};
 
 use super::*;
-use crate::battery::tests::trefoil;
+use crate::battery::tests::{hopf_link, trefoil};
 use crate::model::PARTS;
 use crate::{
     Accuracy, ChargeSettings, ContactParameters, CutSite, DischargeSettings, EndMotion, Ends,
-    FrictionParameters, Guards, IntegratorKind, RodParameters,
+    FrictionParameters, Guards, IntegratorKind, RodEnds, RodParameters,
 };
 
 /// A rod and what is done with it.
@@ -20,6 +20,7 @@ struct Setup {
     rod: RodParameters,
     accuracy: Accuracy,
     discharge: DischargeSettings,
+    is_link: bool,
 }
 
 fn setup(integrator: IntegratorKind, twist: Option<f64>, rubs: bool) -> Setup {
@@ -40,12 +41,26 @@ fn setup(integrator: IntegratorKind, twist: Option<f64>, rubs: bool) -> Setup {
             longest: 3.0,
             ..DischargeSettings::default()
         },
+        is_link: false,
     }
+}
+
+/// Two rings of different length, linked so tightly that they press on each other, and the second of them cut.
+fn linked(integrator: IntegratorKind, rubs: bool) -> Setup {
+    let mut setup = setup(integrator, Some(2.0), rubs);
+    setup.rod.slenderness = 26.0;
+    setup.rod.n_edges = 51;
+    setup.discharge.longest = 1.0;
+    setup.is_link = true;
+    setup
 }
 
 impl Setup {
     fn battery(&self) -> RodBattery {
         let guards = Guards::default();
+        if self.is_link {
+            return RodBattery::link(&self.rod, &self.accuracy, guards, &hopf_link()).unwrap();
+        }
         RodBattery::new(&self.rod, &self.accuracy, guards, &trefoil(1.0)).unwrap()
     }
 
@@ -77,7 +92,8 @@ impl Setup {
         let mut reports = vec![serde_json::to_string(&charged.record().report).unwrap()];
         if !hooks.is_interrupted() {
             hooks.keep_in(&folder.join("discharge"));
-            let cut = charged.cut(CutSite::At(0.3))?;
+            let component = usize::from(self.is_link);
+            let cut = charged.cut(CutSite::On { component, at: 0.3 })?;
             let run = cut.discharge(&self.discharge, &mut hooks)?;
             reports.push(serde_json::to_string(&run.record.report).unwrap());
         }
@@ -153,6 +169,35 @@ fn law_resumed_rods_end_with_the_same_bits() {
                 a == b,
                 "{what}: the {phase} remembers something else at its end"
             );
+        }
+    }
+}
+
+/// A link stopped in its charge and in its discharge, without and with friction.
+#[test]
+fn law_resumed_links_end_with_the_same_bits() {
+    for (integrator, rubs) in [
+        (IntegratorKind::Ros34pw2, true),
+        (IntegratorKind::Ros2w, false),
+    ] {
+        let setup = linked(integrator, rubs);
+        let undisturbed = folder();
+        let reports = setup.run(undisturbed.path(), None).unwrap();
+        let stopped = folder();
+        for stop in [
+            (Phase::Charge, 1),
+            (Phase::Charge, 12),
+            (Phase::Discharge, 1),
+            (Phase::Discharge, 9),
+            (Phase::Discharge, 30),
+        ] {
+            setup.run(stopped.path(), Some(stop)).unwrap();
+        }
+        assert_eq!(setup.run(stopped.path(), None).unwrap(), reports, "{rubs}");
+        assert!(reports.iter().all(|r| r.contains("component_bytes")));
+        for phase in ["charge", "discharge"] {
+            let [a, b] = [&undisturbed, &stopped].map(|f| bytes(&kept(f.path(), phase)));
+            assert!(a == b, "the {phase} of a link remembers something else");
         }
     }
 }
@@ -297,7 +342,7 @@ fn what_does_not_fit_a_phase_is_refused() {
     let foreign = charge("another", &sound).unwrap_err();
     assert!(foreign.contains("belongs to another case"), "{foreign}");
     let model = setup.battery();
-    let model = model.model(model.start(), Ends::default()).unwrap();
+    let model = model.model(model.start(), RodEnds::default()).unwrap();
     let n_dof = model.n_dof();
     assert_eq!(n_dof, 160);
     type Flaw = (&'static str, fn(&mut Saved));

@@ -1,6 +1,7 @@
 //! Energies and forces at hand-computed places, and the matrix of the Newton step where it is exact.
 
 use super::*;
+use crate::Layout;
 use crate::contact::ActivePair;
 use crate::friction::Friction;
 
@@ -139,16 +140,24 @@ fn val_energies_of_a_ring() {
 
 impl Stiffness {
     /// H u, vertex-major.
-    pub(crate) fn product(&self, active: &[ActivePair], u: &[Vector3<f64>]) -> Vec<Vector3<f64>> {
+    pub(crate) fn product(
+        &self,
+        layout: &Layout,
+        active: &[ActivePair],
+        u: &[Vector3<f64>],
+    ) -> Vec<Vector3<f64>> {
         let n = u.len();
         let mut out: Vec<_> = (0..n).map(|i| self.diagonal[i] * u[i]).collect();
         let mut couple = |i: usize, j: usize, block: &Matrix3<f64>| {
             out[i] += block * u[j];
             out[j] += block.transpose() * u[i];
         };
-        for i in 0..n {
-            couple(i, (i + 1) % n, &self.next[i]);
-            couple(i, (i + 2) % n, &self.second[i]);
+        for chain in layout.components() {
+            let (first, n) = (chain.first(), chain.n_vertices());
+            for k in 0..n {
+                couple(first + k, first + (k + 1) % n, &self.next[first + k]);
+                couple(first + k, first + (k + 2) % n, &self.second[first + k]);
+            }
         }
         for (pair, block) in active.iter().zip(&self.contact) {
             couple(pair.i as usize, pair.j as usize, block);
@@ -194,7 +203,7 @@ fn error_of_stiffness(
         pairs: &pairs,
     };
     term.add_stiffness(at, &mut stiffness);
-    let found = stiffness.product(pairs.active(), &u);
+    let found = stiffness.product(state, pairs.active(), &u);
     let size = found.iter().map(|v| v.norm()).fold(0.0, f64::max);
     assert!(size > 1e-3, "{} has no stiffness", term.name());
     let error = |i: usize| (found[i] + (ahead[i] - behind[i]) / (2.0 * by)).norm();
