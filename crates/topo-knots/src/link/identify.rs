@@ -235,7 +235,7 @@ fn diagram(chains: &[Vec<V>]) -> Result<Diagram, KnotError> {
     Ok(best)
 }
 
-/// Why no diagram can be had: which components meet.
+/// Why there is no diagram: which components meet.
 fn touching(components: &[&[V]]) -> KnotError {
     let all = || components.iter().flat_map(|x| x.iter());
     let size = all().map(V::amax).fold(f64::MIN_POSITIVE, f64::max);

@@ -132,7 +132,7 @@ fn what_is_no_link_is_refused() {
         Err(error) => error.to_string(),
     };
     named(&[a.clone(), b.clone()]).expect("a link");
-    assert!(refused(&[a.clone()]).contains("a single component"));
+    assert!(refused(std::slice::from_ref(&a)).contains("a single component"));
     assert!(refused(&[]).contains("a single component"));
     let mut bad = b.clone();
     bad[7].y = f64::NAN;
