@@ -18,7 +18,8 @@ use self::curves::total_length;
 use crate::contact::ContactPairs;
 use crate::energy::{At, EnergyTerm, TermFactory, terms_of};
 use crate::{
-    Accuracy, Geometry, Guards, RodEnds, RodError, RodModel, RodParameters, RodState, Tube,
+    Accuracy, Geometry, Guards, RestShape, RodEnds, RodError, RodModel, RodParameters, RodState,
+    Tube,
 };
 
 /// A tied fibre, or several, ready to be twisted, fused and charged.
@@ -32,6 +33,8 @@ pub struct RodBattery {
     /// One for each component, in their own unit.
     centrelines: Vec<Polyline>,
     start: RodState,
+    /// The natural shape, if it is not straight and untwisted.
+    rest: Option<RestShape>,
     /// Terms supplied by the caller.
     own_terms: Vec<TermFactory>,
 }
@@ -101,6 +104,7 @@ impl RodBattery {
             ropelength,
             centrelines,
             start,
+            rest: None,
             own_terms: Vec::new(),
         })
     }
@@ -125,6 +129,33 @@ impl RodBattery {
         Ok(self)
     }
 
+    /// The same battery of rods that are curved or twisted at rest: natural curvature (κ_1, κ_2) in 1/h and twist in radians per h of
+    /// component c at the arclength s in h, as in [`RodState::with_rest`] of the [`start`](Self::start). The tied-in twist is
+    /// what the rods have, not what they have in excess.
+    ///
+    /// # Errors
+    /// A number that is not finite.
+    pub fn with_rest(
+        self,
+        curvature: impl Fn(usize, f64) -> [f64; 2],
+        twist: impl Fn(usize, f64) -> f64,
+    ) -> Result<Self, RodError> {
+        let start = self.start.clone().with_rest(curvature, twist)?;
+        Ok(Self {
+            rest: start.rest().cloned(),
+            start,
+            ..self
+        })
+    }
+
+    /// A start with the natural shape of this battery.
+    fn resting(&self, start: RodState) -> RodState {
+        match &self.rest {
+            Some(shape) => start.with_shape(shape.clone()),
+            None => start,
+        }
+    }
+
     /// The model of a phase that starts from `state`.
     pub(crate) fn model(&self, state: &RodState, ends: RodEnds) -> Result<RodModel, RodError> {
         let (accuracy, guards) = (&self.accuracy, self.guards);
@@ -141,7 +172,7 @@ impl RodBattery {
     /// # Validation
     /// `val_density_of_a_bent_twisted_stretched_coil`, `law_density_sums_to_the_elastic_energy`
     pub fn energy_density(&self, state: &RodState) -> Vec<f64> {
-        let mut terms = terms_of(&self.parameters, &self.tube);
+        let mut terms = terms_of(&self.parameters, &self.tube, state);
         terms.extend(self.own_terms.iter().map(|term| term.make(state)));
         let range = self.tube.contact_diameter.max(self.tube.friction_range);
         let mut pairs = ContactPairs::new(range, self.accuracy.skin);
@@ -186,7 +217,7 @@ impl RodBattery {
         }
         Ok(Self {
             centrelines: curves.to_vec(),
-            start: start_of(curves, &self.tube, &self.parameters)?,
+            start: self.resting(start_of(curves, &self.tube, &self.parameters)?),
             ..self.clone()
         })
     }
@@ -198,7 +229,7 @@ impl RodBattery {
     pub fn mirrored(&self) -> Result<Self, RodError> {
         let centrelines: Vec<Polyline> = self.centrelines.iter().map(Polyline::mirrored).collect();
         Ok(Self {
-            start: start_of(&centrelines, &self.tube, &self.parameters)?,
+            start: self.resting(start_of(&centrelines, &self.tube, &self.parameters)?),
             centrelines,
             ..self.clone()
         })

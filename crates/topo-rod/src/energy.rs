@@ -12,6 +12,7 @@ mod contact;
 mod gradient;
 mod list;
 mod parts;
+mod rest;
 mod stretch;
 mod twist;
 
@@ -24,6 +25,7 @@ pub use gradient::gradient_error;
 pub use list::TermFactory;
 pub(crate) use list::{checked_name, terms_of};
 pub use parts::{EnergyKind, EnergyPart, RodParts, StoredEnergy};
+pub use rest::{CurvedBend, CurvedTwist};
 pub use stretch::Stretch;
 pub use twist::Twist;
 

@@ -2,7 +2,8 @@
 
 use nalgebra::Vector3;
 
-use crate::RodState;
+use crate::state::{carried, turned};
+use crate::{Chain, RodState};
 
 /// Edges shorter than this share of their natural length have no reliable direction: rounding would turn it.
 const COLLAPSED: f64 = 1e-3;
@@ -18,6 +19,11 @@ pub struct Geometry {
     pub cosine: Vec<f64>,
     /// Curvature binormal kb_i = 2 t_{i−1} × t_i/(1 + c_i), |kb| = 2 tan(φ/2): no unit (0 at free ends).
     pub binormal: Vec<Vector3<f64>>,
+    /// Director d_1 of each edge; none without a natural shape.
+    pub director: Vec<Vector3<f64>>,
+    /// Director d_1 of the first edge of each component as it is when carried once around it: where its ends were fused at an
+    /// angle, the material jumps by that angle within this edge.
+    pub seam: Vec<Vector3<f64>>,
 }
 
 impl Geometry {
@@ -37,6 +43,8 @@ impl Geometry {
         self.cosine.resize(n, 1.0);
         self.binormal.clear();
         self.binormal.resize(n, Vector3::zeros());
+        self.director.clear();
+        self.seam.clear();
         let mut sound = true;
         for chain in state.components() {
             let least = COLLAPSED * chain.rest_length();
@@ -55,6 +63,44 @@ impl Geometry {
                 self.binormal[i] = a.cross(&b) * (2.0 / (1.0 + c));
             }
         }
+        if state.rest().is_some() {
+            self.follow_directors(state);
+        }
         sound
+    }
+
+    /// Directors d_1 and d_2 = t × d_1 of the edges before and after vertex `i` of component `c`, joined like `chain`.
+    #[inline]
+    pub(crate) fn directors_at(&self, c: usize, chain: &Chain, i: usize) -> [[Vector3<f64>; 2]; 2] {
+        let before = chain.edge_before(i);
+        let after = if i == chain.first() {
+            self.seam[c]
+        } else {
+            self.director[i]
+        };
+        [(before, self.director[before]), (i, after)].map(|(j, d)| [d, self.tangent[j].cross(&d)])
+    }
+
+    /// From the first edge of each component on, carried over each vertex and turned by its twist.
+    fn follow_directors(&mut self, state: &RodState) {
+        self.director.resize(state.n_edges(), Vector3::zeros());
+        for (c, chain) in state.components().iter().enumerate() {
+            let Some(mut director) = state.first_director(c) else {
+                continue;
+            };
+            self.director[chain.first()] = director;
+            for j in chain.edges().skip(1) {
+                let (a, b) = (self.tangent[j - 1], self.tangent[j]);
+                director = turned(&carried(&director, &a, &b), &b, state.twists()[j]);
+                self.director[j] = director;
+            }
+            let (last, first) = (chain.edges().end - 1, chain.first());
+            let (a, b) = (self.tangent[last], self.tangent[first]);
+            self.seam.push(turned(
+                &carried(&director, &a, &b),
+                &b,
+                state.twists()[first],
+            ));
+        }
     }
 }

@@ -47,4 +47,4 @@ pub use parameters::{
     Accuracy, ContactParameters, FrictionParameters, FrictionRange, IntegratorKind, Reading,
     RodParameters, Tube,
 };
-pub use state::RodState;
+pub use state::{RestShape, RodState};

@@ -158,7 +158,7 @@ impl RodModel {
             reach,
         } = named;
         let ends = ends.into().placed(state, twist.is_some())?;
-        let terms = terms_of(&parameters, tube);
+        let terms = terms_of(&parameters, tube, state);
         let pairs = named.pairs(accuracy.skin, state.is_closed());
         let (n_vertices, n_edges) = (state.n_vertices(), state.n_edges());
         let held_vertices: Vec<_> = ends.iter().flat_map(PlacedEnds::held_vertices).collect();

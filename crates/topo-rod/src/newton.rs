@@ -207,19 +207,15 @@ impl NewtonMatrix {
             add(3 * n + place, (i, j), identity(-c), false);
         }
         // a rod that its own terms may hold as a whole is grounded just enough to be solved for
-        let viscous = 1.0 / state.rest_length();
-        let ground = if self.is_tethered {
-            LOOSE_GROUND * viscous
-        } else {
-            viscous
-        };
+        let trace = if self.is_tethered { LOOSE_GROUND } else { 1.0 };
+        let (blocks, fixed) = (&self.blocks, &self.fixed);
         match &self.drag {
-            Some(several) => {
-                hold(values, &self.blocks, &self.fixed, several.drag().grounds());
-            }
+            Some(several) => hold(values, blocks, fixed, several.drag().grounds()),
             None => {
-                let first = self.floating.then_some((0, ground));
-                hold(values, &self.blocks, &self.fixed, first.into_iter());
+                let first = self
+                    .floating
+                    .then(|| (0, trace * (1.0 / state.rest_length())));
+                hold(values, blocks, fixed, first.into_iter());
             }
         }
         self.n_factorisations += 1;

@@ -1,12 +1,16 @@
 //! The degrees of freedom of one or several rods: vertices and integrated twists.
 
 mod measures;
+mod rest;
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use topo_core::Polyline;
 
-use crate::{Chain, Layout, RodError};
+pub use rest::RestShape;
+pub(crate) use rest::{Material, carried, turned};
+
+use crate::{Chain, Geometry, Layout, RodError};
 
 /// A discrete rod: vertices x_i and the integrated twist m_i of each interior vertex.
 ///
@@ -25,15 +29,32 @@ pub struct RodState {
     vertices: Vec<Vector3<f64>>,
     twists: Vec<f64>,
     #[serde(rename = "chain")]
-    layout: Layout,
+    joined: Joined,
     stamp: u64,
+}
+
+/// How vertices are joined, and what their material is like at rest.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Joined {
+    pub(crate) layout: Layout,
+    /// None where all rods are straight and untwisted at rest.
+    pub(crate) material: Option<Box<Material>>,
+}
+
+impl From<Layout> for Joined {
+    fn from(layout: Layout) -> Self {
+        Self {
+            layout,
+            material: None,
+        }
+    }
 }
 
 impl std::ops::Deref for RodState {
     type Target = Layout;
 
     fn deref(&self) -> &Layout {
-        &self.layout
+        &self.joined.layout
     }
 }
 
@@ -64,7 +85,7 @@ impl RodState {
         let state = Self {
             vertices: centreline.vertices().to_vec(),
             twists,
-            layout: Layout::of([Chain::new(n, closed, rest_length)]),
+            joined: Layout::of([Chain::new(n, closed, rest_length)]).into(),
             stamp: 0,
         };
         for i in state.interior() {
@@ -88,7 +109,7 @@ impl RodState {
 
     /// How vertices and edges are joined.
     pub fn layout(&self) -> &Layout {
-        &self.layout
+        &self.joined.layout
     }
 
     /// Unit tangent of edge `j`.
@@ -104,10 +125,16 @@ impl RodState {
         }
     }
 
-    /// Whether it is a rod joined like `layout`, all of whose numbers are finite.
-    pub(crate) fn is_sound(&self, layout: &Layout) -> bool {
-        let n = layout.n_vertices();
-        self.layout == *layout
+    /// Whether it is another state of the rods of `fresh`, all of whose numbers are finite.
+    pub(crate) fn is_sound(&self, fresh: &Self) -> bool {
+        let n = fresh.n_vertices();
+        let is_alike = match (&self.joined.material, &fresh.joined.material) {
+            (None, None) => true,
+            (Some(own), Some(other)) => own.is_like(other, fresh),
+            _ => false,
+        };
+        is_alike
+            && self.joined.layout == fresh.joined.layout
             && (self.vertices.len(), self.twists.len()) == (n, n)
             && self.vertices.iter().flatten().all(|x| x.is_finite())
             && self.twists.iter().all(|x| x.is_finite())
@@ -127,7 +154,8 @@ impl RodState {
     /// `a_link_is_its_rods_one_after_the_other`
     pub fn link<'a>(rods: impl IntoIterator<Item = &'a Self>) -> Result<Self, RodError> {
         let (mut vertices, mut twists, mut chains) = (Vec::new(), Vec::new(), Vec::new());
-        for rod in rods {
+        let rods: Vec<&Self> = rods.into_iter().collect();
+        for rod in &rods {
             vertices.extend_from_slice(&rod.vertices);
             twists.extend_from_slice(&rod.twists);
             chains.extend_from_slice(rod.components());
@@ -138,7 +166,10 @@ impl RodState {
         Ok(Self {
             vertices,
             twists,
-            layout: Layout::of(chains),
+            joined: Joined {
+                layout: Layout::of(chains),
+                material: Material::of_link(&rods),
+            },
             stamp: 0,
         })
     }
@@ -148,11 +179,15 @@ impl RodState {
     /// # Errors
     /// There is no such component.
     pub fn component(&self, c: usize) -> Result<Self, RodError> {
-        let chain = self.chain(c)?;
+        let own = self.chain(c)?.vertices();
+        let material = self.joined.material.as_ref();
         Ok(Self {
-            vertices: self.vertices[chain.vertices()].to_vec(),
-            twists: self.twists[chain.vertices()].to_vec(),
-            layout: Layout::of([*chain]),
+            vertices: self.vertices[own.clone()].to_vec(),
+            twists: self.twists[own.clone()].to_vec(),
+            joined: Joined {
+                layout: Layout::of([*self.chain(c)?]),
+                material: material.map(|m| Box::new(m.component(c, own))),
+            },
             stamp: 0,
         })
     }
@@ -187,21 +222,31 @@ impl RodState {
             });
         }
         let (first, n, behind) = (cut.first(), cut.n_vertices(), cut.vertices().end);
-        let from = |k: usize| first + (vertex - first + k) % n;
-        let mut vertices = self.vertices[..first].to_vec();
-        vertices.extend((0..=n).map(|k| self.vertices[from(k)]));
-        vertices.extend_from_slice(&self.vertices[behind..]);
-        let mut twists = self.twists[..first].to_vec();
-        twists.push(0.0);
-        twists.extend((1..n).map(|k| self.twists[from(k)]));
-        twists.push(0.0);
-        twists.extend_from_slice(&self.twists[behind..]);
+        let opened = (0..=n).map(|k| first + (vertex - first + k) % n);
+        let places: Vec<usize> = (0..first).chain(opened).chain(behind..n_vertices).collect();
+        let is_end = |k: usize| k == first || k == first + n;
+        let twist = |(k, &place): (usize, &usize)| {
+            if is_end(k) { 0.0 } else { self.twists[place] }
+        };
         let chains = self.components().iter();
-        let opened = chains.map(|chain| if *chain == cut { cut.opened() } else { *chain });
+        let chains = chains.map(|chain| if *chain == cut { cut.opened() } else { *chain });
+        let material = self.joined.material.as_ref().map(|material| {
+            let (c, geometry) = (self.component_of(vertex), Geometry::new(self));
+            let (own, around) = (geometry.director[first], geometry.seam[c]);
+            let seam = geometry.tangent[first]
+                .dot(&own.cross(&around))
+                .atan2(own.dot(&around));
+            let is_behind = |place: usize| first < place && place < vertex;
+            let director = geometry.director[vertex];
+            Box::new(material.rearranged(&places, is_end, is_behind, (c, director, seam)))
+        });
         Ok(Self {
-            vertices,
-            twists,
-            layout: Layout::of(opened),
+            vertices: places.iter().map(|&place| self.vertices[place]).collect(),
+            twists: places.iter().enumerate().map(twist).collect(),
+            joined: Joined {
+                layout: Layout::of(chains),
+                material,
+            },
             stamp: self.stamp + 1,
         })
     }
@@ -219,7 +264,7 @@ impl RodState {
     /// where a and b are the tangents before and after the vertex, a' and b' those after the step.
     pub(crate) fn moved_by(&self, step: &[f64], with_twist: bool, stamp: u64, to: &mut RodState) {
         let n = self.vertices.len();
-        to.layout.clone_from(&self.layout);
+        to.joined.layout.clone_from(&self.joined.layout);
         to.stamp = stamp;
         to.vertices.clear();
         to.vertices.extend(
@@ -227,6 +272,7 @@ impl RodState {
         );
         to.twists.clear();
         to.twists.extend_from_slice(&self.twists);
+        self.carry_directors(step, with_twist, to);
         if !with_twist {
             return;
         }

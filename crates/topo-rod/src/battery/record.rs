@@ -11,7 +11,7 @@ use super::tips::tips_have_parted;
 use crate::contact::ContactPairs;
 use crate::energy::{RodParts, StoredEnergy};
 use crate::model::{CHANNELS, WorkAccount};
-use crate::{Layout, RodState, Tube};
+use crate::{RodState, Tube};
 
 /// The rod at one output time.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -159,22 +159,22 @@ impl Recorder {
         self
     }
 
-    /// What does not fit a phase that begins like this one, of a rod joined like `layout`, at `time`.
-    pub(super) fn flaw(&self, seen: &Seen, layout: &Layout, time: f64) -> Option<&'static str> {
-        let (fresh, now) = (&self.seen, time / self.scales.time);
+    /// What does not fit a phase that begins like this one, of a run from `fresh`, at `time`.
+    pub(super) fn flaw(&self, seen: &Seen, fresh: &RodState, time: f64) -> Option<&'static str> {
+        let (begun, now) = (&self.seen, time / self.scales.time);
         let mut last = -1.0;
         let in_order = seen.samples.iter().all(|s| {
             let grows = s.time > last && s.time <= now;
             last = s.time;
             grows
-                && s.state.is_sound(layout)
+                && s.state.is_sound(fresh)
                 && s.stored.len() == self.parts.len()
                 && s.stored.iter().chain(&s.dissipated).all(|x| x.is_finite())
         });
-        let fits = seen.curve.parts() == fresh.curve.parts()
-            && seen.curve.channels() == fresh.curve.channels()
+        let fits = seen.curve.parts() == begun.curve.parts()
+            && seen.curve.channels() == begun.curve.channels()
             && seen.curve.time().last().is_none_or(|t| *t <= now)
-            && fresh.outputs.leads_to(&seen.outputs);
+            && begun.outputs.leads_to(&seen.outputs);
         (!in_order || !fits).then_some("the samples are those of another run")
     }
 

@@ -27,7 +27,7 @@ fn density_of(rod: &RodParameters, state: &RodState) -> Vec<f64> {
         geometry: &Geometry::new(state),
         pairs: &ContactPairs::new(0.0, 0.1),
     };
-    energy_density(&terms_of(rod, &rod.tube(50.0).unwrap()), at)
+    energy_density(&terms_of(rod, &rod.tube(50.0).unwrap(), state), at)
 }
 
 /// (κ² + α θ'²)/8 + (γ/2)(|x'| − 1)² at every vertex of a ring and of a helix: κ = R/(R² + q²), and both strained by a quarter.

@@ -3,20 +3,33 @@
 use std::fmt;
 use std::sync::Arc;
 
-use super::{Bend, ContactEnergy, EnergyTerm, RodParts, Stretch, Twist};
+use super::{Bend, ContactEnergy, CurvedBend, CurvedTwist, EnergyTerm, RodParts, Stretch, Twist};
 use crate::model::CHANNELS;
 use crate::{RodError, RodParameters, RodState, Tube};
 
 /// The terms that the parameters name, in the order in which their energies are summed. A further term of this crate is one
 /// line here.
-pub(crate) fn terms_of(rod: &RodParameters, tube: &Tube) -> Vec<Box<dyn EnergyTerm>> {
+pub(crate) fn terms_of(
+    rod: &RodParameters,
+    tube: &Tube,
+    state: &RodState,
+) -> Vec<Box<dyn EnergyTerm>> {
     fn listed<T: EnergyTerm + 'static>(term: Option<T>) -> Option<Box<dyn EnergyTerm>> {
         term.map(|term| Box::new(term) as Box<dyn EnergyTerm>)
     }
+    let curved = state.rest().is_some();
     let terms = [
-        listed(Some(Bend)),
+        if curved {
+            listed(Some(CurvedBend))
+        } else {
+            listed(Some(Bend))
+        },
         listed(Some(Stretch::of(rod))),
-        listed(Twist::of(rod)),
+        if curved {
+            listed(Twist::of(rod).map(CurvedTwist))
+        } else {
+            listed(Twist::of(rod))
+        },
         listed(ContactEnergy::of(rod, tube)),
     ];
     terms.into_iter().flatten().collect()

@@ -78,6 +78,85 @@ fn bend_force_is_the_gradient() {
     check(&Bend, 0.0, 2e-3);
 }
 
+/// A rod with a natural shape that varies along each component, in no plane.
+fn curved(rod: RodState) -> RodState {
+    let curvature = |c: usize, s: f64| {
+        let phase = 0.7 * s + c as f64;
+        [0.6 + 0.3 * phase.sin(), 0.4 * phase.cos()]
+    };
+    rod.with_rest(curvature, |c, s| 0.5 + 0.2 * (s + c as f64).sin())
+        .unwrap()
+}
+
+fn check_curved(term: &dyn EnergyTerm) {
+    for rod in [crumpled(true), crumpled(false), link()] {
+        let rod = curved(rod);
+        let mut pairs = ContactPairs::new(0.0, 0.3);
+        let error = gradient_error(term, &rod, &mut pairs, 2e-3);
+        assert!(error < 1e-7, "{}: off by {error:.2e}", term.name());
+        let mut force = Force::default();
+        force.reset(&rod);
+        let at = At {
+            state: &rod,
+            geometry: &Geometry::new(&rod),
+            pairs: &pairs,
+        };
+        let stored = term.add_force(at, &mut force);
+        assert!((stored - term.energy(at)).abs() <= 1e-13 * stored);
+        let torque = force.torque.iter().map(|t| t.abs()).fold(0.0, f64::max);
+        assert!(
+            stored > 1e-3 && torque > 1e-3,
+            "{} is not at work",
+            term.name()
+        );
+        let mut density = vec![0.0; rod.n_vertices()];
+        term.add_density(at, &mut density);
+        let sum: f64 = density
+            .iter()
+            .enumerate()
+            .map(|(i, w)| w * at.share(i))
+            .sum();
+        assert!((sum - stored).abs() < 1e-12 * stored);
+    }
+}
+
+#[test]
+fn bend_about_a_natural_curvature_has_its_gradient() {
+    check_curved(&CurvedBend);
+}
+
+#[test]
+fn twist_about_a_natural_twist_has_its_gradient() {
+    check_curved(&CurvedTwist(Twist { ratio: 0.77 }));
+}
+
+/// The present shape as the natural one stores nothing and pulls at nothing, and a cut does not change that.
+#[test]
+fn law_a_rod_at_rest_in_its_shape_is_free_of_stress() {
+    for rod in [crumpled(true), crumpled(false), link()] {
+        let rod = rod.at_rest().unwrap();
+        let cut = rod.components()[0]
+            .is_closed()
+            .then(|| rod.cut_at(17).unwrap());
+        for rod in [Some(rod), cut].into_iter().flatten() {
+            let (geometry, mut force) = (Geometry::new(&rod), Force::default());
+            let pairs = ContactPairs::new(0.0, 0.3);
+            let at = At {
+                state: &rod,
+                geometry: &geometry,
+                pairs: &pairs,
+            };
+            force.reset(&rod);
+            let bend = CurvedBend.add_force(at, &mut force);
+            let twist = CurvedTwist(Twist { ratio: 0.77 }).add_force(at, &mut force);
+            assert!(bend + twist < 1e-24, "{bend:e} {twist:e}");
+            let largest = force.vertex.iter().map(|f| f.norm()).fold(0.0, f64::max);
+            assert!(largest < 1e-12, "{largest:e}");
+            assert!(force.torque.iter().all(|t| t.abs() < 1e-12));
+        }
+    }
+}
+
 #[test]
 fn twist_force_is_the_gradient() {
     check(&Twist { ratio: 0.77 }, 0.0, 2e-3);

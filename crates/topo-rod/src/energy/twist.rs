@@ -35,6 +35,31 @@ impl Twist {
     pub fn torque(&self, m: f64, rest_length: f64) -> f64 {
         self.ratio * m / (4.0 * rest_length)
     }
+
+    /// Adds the forces and torques of vertices whose twist, in radians, is by `excess` more than the natural one.
+    #[inline]
+    pub(super) fn add_torques(
+        &self,
+        at: At<'_>,
+        force: &mut Force,
+        excess: impl Fn(&Chain, usize) -> f64,
+    ) {
+        let g = at.geometry;
+        for chain in at.state.components() {
+            for i in chain.interior() {
+                let (before, after) = (chain.edge_before(i), i);
+                let torque = self.torque(excess(chain, i), chain.rest_length());
+                let pull = g.binormal[i] * (0.5 * torque);
+                let on_before = pull / g.edge_length[before];
+                let on_after = pull / g.edge_length[after];
+                force.vertex[before] += on_before;
+                force.vertex[i] += on_after - on_before;
+                force.vertex[chain.edge_end(after)] -= on_after;
+                force.torque[before] += torque;
+                force.torque[after] -= torque;
+            }
+        }
+    }
 }
 
 impl EnergyTerm for Twist {
@@ -52,21 +77,8 @@ impl EnergyTerm for Twist {
     }
 
     fn add_force(&self, at: At<'_>, force: &mut Force) -> f64 {
-        let (g, m) = (at.geometry, at.state.twists());
-        for chain in at.state.components() {
-            for i in chain.interior() {
-                let (before, after) = (chain.edge_before(i), i);
-                let torque = self.torque(m[i], chain.rest_length());
-                let pull = g.binormal[i] * (0.5 * torque);
-                let on_before = pull / g.edge_length[before];
-                let on_after = pull / g.edge_length[after];
-                force.vertex[before] += on_before;
-                force.vertex[i] += on_after - on_before;
-                force.vertex[chain.edge_end(after)] -= on_after;
-                force.torque[before] += torque;
-                force.torque[after] -= torque;
-            }
-        }
+        let m = at.state.twists();
+        self.add_torques(at, force, |_, i| m[i]);
         self.energy(at)
     }
 

@@ -59,7 +59,15 @@ impl Setup {
     fn battery(&self) -> RodBattery {
         let guards = Guards::default();
         if self.is_link {
-            return RodBattery::link(&self.rod, &self.accuracy, guards, &hopf_link()).unwrap();
+            let rods = hopf_link();
+            let battery = RodBattery::link(&self.rod, &self.accuracy, guards, &rods).unwrap();
+            // curved at rest where friction is left out
+            return match self.rod.friction {
+                Some(_) => battery,
+                None => battery
+                    .with_rest(|_, s| [0.1, 0.05 * s.sin()], |c, _| 0.1 * c as f64)
+                    .unwrap(),
+            };
         }
         RodBattery::new(&self.rod, &self.accuracy, guards, &trefoil(1.0)).unwrap()
     }
@@ -173,7 +181,7 @@ fn law_resumed_rods_end_with_the_same_bits() {
     }
 }
 
-/// A link stopped in its charge and in its discharge, without and with friction.
+/// A link stopped in its charge and in its discharge, with friction, and curved and twisted at rest.
 #[test]
 fn law_resumed_links_end_with_the_same_bits() {
     for (integrator, rubs) in [
