@@ -77,7 +77,7 @@ impl RodBattery {
     /// A parameter out of range, no curve, or curves that are open, touch themselves or each other or are unusable.
     ///
     /// # Validation
-    /// `val_a_tight_hopf_link_has_the_ropelength_of_eight_pi`
+    /// `val_tight_chains_of_rings_have_their_ropelength`
     pub fn link(
         parameters: &RodParameters,
         accuracy: &Accuracy,

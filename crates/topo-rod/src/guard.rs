@@ -140,8 +140,9 @@ pub(crate) fn certify(
             let joined = chain.is_closed() || pairs.is_cyclic_along(from, from.component_of(i));
             let seam = chain.edges().end - 1;
             for j in edges().filter(|&j| j > i) {
-                let adjoin = j == i + 1 && chain.edges().contains(&j);
-                if !adjoin && !(joined && i == chain.first() && j == seam) {
+                let next = j == i + 1 && chain.edges().contains(&j);
+                let around = joined && i == chain.first() && j == seam;
+                if !(next || around) {
                     certify_pair(from, step, limit, i, j)?;
                 }
             }
