@@ -23,7 +23,10 @@ mod probe;
 mod record;
 mod run;
 mod scene;
+mod starts;
 mod sweep;
+mod tie;
+mod tied;
 mod variants;
 
 pub use accuracy::{ACCURACY_CASES, AccuracyRow, measure_accuracy, reference_scene};
@@ -42,4 +45,6 @@ pub use own_term::OwnTerm;
 pub(crate) use probe::ROD_PROBE;
 pub use scene::{ElasticScene, OwnKnots};
 pub use sweep::{ElasticReport, Rods, estimate_sweep, run_sweep};
+pub use tie::Tie;
+pub use tied::Tied;
 pub use variants::{Purpose, Variant};

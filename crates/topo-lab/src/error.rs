@@ -144,14 +144,22 @@ impl LabError {
 
     /// The error with its place in a scene's file, if it is about a knot that the file names.
     pub fn in_file(self, path: &Path) -> Self {
-        let Self::Knot(KnotError::UnknownKnot { name, .. }) = &self else {
-            return self;
-        };
         let Ok(text) = read_text(path) else {
             return self;
         };
         match Document::new(&text, path) {
-            Ok(document) if document.has("rod.knot") => {
+            Ok(document) => self.placed(&document),
+            Err(_) => self,
+        }
+    }
+
+    /// The error with its place in a scene, if it names a key or a knot and has none.
+    pub(crate) fn placed(self, document: &Document<'_>) -> Self {
+        match &self {
+            Self::Scene(fault) if fault.line.is_none() && !fault.key.is_empty() => {
+                document.wrong(&fault.key, &fault.found, fault.expected.clone())
+            }
+            Self::Knot(KnotError::UnknownKnot { name, .. }) if document.has("rod.knot") => {
                 document.wrong("rod.knot", format!("\"{name}\""), self.to_string())
             }
             _ => self,

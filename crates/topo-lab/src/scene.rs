@@ -17,6 +17,7 @@ pub use axis::{Axis, AxisValue};
 pub(crate) use beside::BesideQ;
 pub use document::Document;
 pub(crate) use document::read_text;
+pub(crate) use fault::LEFT_OUT;
 pub use fault::SceneFault;
 pub use folder::folder_of;
 pub(crate) use forms::nearest;

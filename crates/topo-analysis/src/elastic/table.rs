@@ -9,11 +9,20 @@ use serde::{Deserialize, Serialize};
 pub struct SweepRow {
     /// Folder of the case beside the table.
     pub case: String,
-    /// Knot type.
+    /// Knot type, or that of a link.
     pub knot: String,
+    /// Name found for the curves that were tied, hand included: of a knot or link of the table, else what fits.
+    #[serde(default)]
+    pub name: String,
+    /// Number of closed fibres that were charged.
+    #[serde(default = "one")]
+    pub components: usize,
+    /// Linking numbers of the charged fibres, 1 and 2, 1 and 3 and so on to the last two, semicolons between them; empty for a knot.
+    #[serde(default)]
+    pub linking: String,
     /// Twist density θ'h tied in before the ends were fused.
     pub twist: f64,
-    /// Position of the cut, s/L.
+    /// Position of the cut, s/L; of a link along its components, one after the other.
     pub cut: f64,
     /// Reading of the slenderness.
     pub reading: String,
@@ -95,6 +104,11 @@ pub struct SweepRow {
     pub cpu_seconds: f64,
     /// What is doubtful about it.
     pub warnings: Warnings,
+}
+
+/// Components of the rows of tables without that column.
+fn one() -> usize {
+    1
 }
 
 impl SweepRow {

@@ -216,7 +216,7 @@ pub fn measure_accuracy(
                 let inputs = CaseInputs {
                     scene,
                     case: &case,
-                    tight,
+                    start: tight.into(),
                     table,
                 };
                 measured_discharge(&inputs, site, interrupt).map(|found| (found, clock.seconds()))

@@ -1,11 +1,12 @@
 //! A case with what it starts from, and what was followed of it.
 
 use topo_analysis::{DischargeTimes, SweepRow, Timeline};
-use topo_knots::{KnotTable, TightKnot};
+use topo_knots::{KnotError, KnotTable};
 use topo_rod::{ChargedRod, CutSite, Discharge, DischargeSettings, RodError, RunHooks};
 
 use super::case::ElasticCase;
 use super::scene::ElasticScene;
+use super::tied::Start;
 use crate::LabError;
 
 /// A case with what it starts from.
@@ -13,7 +14,7 @@ use crate::LabError;
 pub(crate) struct CaseInputs<'a> {
     pub scene: &'a ElasticScene,
     pub case: &'a ElasticCase,
-    pub tight: &'a TightKnot,
+    pub start: Start<'a>,
     pub table: &'a KnotTable,
 }
 
@@ -23,6 +24,18 @@ impl CaseInputs<'_> {
         LabError::Rod {
             case: self.scene.case_name(self.case),
             source,
+        }
+    }
+
+    /// The error of a start that its edges do not follow.
+    pub(crate) fn too_coarse(&self, error: &KnotError) -> LabError {
+        let reason = format!(
+            "{} edges do not follow its start curve ({error}): use more edges",
+            self.case.rod.n_edges
+        );
+        LabError::Case {
+            case: self.scene.case_name(self.case),
+            source: reason.into(),
         }
     }
 
@@ -44,6 +57,8 @@ impl CaseInputs<'_> {
 /// One cut of a charged rod, followed to its end.
 pub(super) struct CutResults {
     pub discharge: Discharge,
+    /// Place of the cut, s/L along all components, one after the other.
+    pub cut: f64,
     /// Of the energy before the cut.
     pub times: DischargeTimes,
     /// Of the energy that the cut left.

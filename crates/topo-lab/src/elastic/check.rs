@@ -29,8 +29,12 @@ pub(super) fn faults(
     let mut see = |checked: Result<(), LabError>| faults.extend(checked.err());
     see(check_knots(scene, document));
     let n_knots = scene.knots.iter().map(|k| if k == "all" { ALL } else { 1 });
+    let n_knots: usize = n_knots.sum();
     let outer = [
-        ("rod.knot", n_knots.sum()),
+        (
+            "rod.knot",
+            scene.tie.as_ref().map_or(n_knots, |tie| tie.n(n_knots)),
+        ),
         ("rod.twist", scene.twists.len().max(1)),
     ];
     if let Err(too_many) = check_count(document, &outer, &scene.axes) {
@@ -81,6 +85,9 @@ fn values(scene: &ElasticScene, key: &str) -> Option<Vec<f64>> {
 
 fn check_knots(scene: &ElasticScene, document: &Document<'_>) -> Result<(), LabError> {
     let key = "rod.knot";
+    if scene.tie.as_ref().is_some_and(|tie| !tie.is_of_knots()) {
+        return Ok(());
+    }
     if scene.knots.is_empty() {
         return Err(document.wrong(key, "[]", "name at least one knot, or write \"all\""));
     }
@@ -185,6 +192,13 @@ pub(super) fn unknown_knots(scene: &ElasticScene, document: &Document<'_>) -> Ve
     unknown
         .map(|(name, e)| document.wrong("rod.knot", format!("\"{name}\""), e.to_string()))
         .collect()
+}
+
+/// Why what is tied besides tight knots by name cannot be.
+pub(super) fn untied(scene: &ElasticScene, document: &Document<'_>) -> Option<LabError> {
+    scene.tie.as_ref()?;
+    let cases = scene.knot_table().and_then(|table| scene.cases(&table));
+    cases.err().map(|e| e.placed(document))
 }
 
 /// What the rod refuses, with the key of the scene.

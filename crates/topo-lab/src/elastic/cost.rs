@@ -3,20 +3,20 @@
 //! Processor seconds at N = 200 edges and tolerance 1e-3 h are means over the published knots and twists, their growth is that
 //! from 100 to 560 edges and from 4e-3 to 1e-4 h. Twist makes no difference worth counting, the knot does.
 
-use topo_knots::KnotEntry;
 use topo_rod::RodParameters;
 
 use super::case::ElasticCase;
 use super::choices::Cuts;
 use super::identity::starts_from_two_images;
 use super::scene::ElasticScene;
+use super::tied::Entry;
 use crate::cost::Cost;
 
 /// Cost of a case of the scene; `n_cuts` is their number where it is known.
 pub(super) fn cost_of(
     scene: &ElasticScene,
     case: &ElasticCase,
-    entry: &KnotEntry,
+    entry: &Entry,
     n_cuts: Option<usize>,
 ) -> Cost {
     let fixed = scene.fixed_cuts.as_ref();
@@ -27,7 +27,7 @@ pub(super) fn cost_of(
         1.0
     };
     let work = Work {
-        knot: of_crossings(entry.crossing_number),
+        knot: of_crossings(entry.crossing_number()),
         n_charges,
         n_cuts: cuts(scene, n_cuts.or(fixed)),
         is_twisted: case.rod.twist.is_some(),
@@ -137,7 +137,7 @@ mod tests {
         change(&mut scene);
         let table = KnotTable::builtin();
         let cost = |case: &ElasticCase| {
-            let entry = table.get(&case.knot).unwrap();
+            let entry = case.entry(&table).unwrap();
             cost_of(&scene, case, &entry, None).seconds
         };
         scene.cases(&table).unwrap().iter().map(cost).sum()

@@ -20,6 +20,8 @@
 //!
 //! Instead of the table `[accuracy]`, the first line may say `accuracy = 0.02` (relative error of t99) or `budget = "10 min"`.
 
+mod tied;
+
 use std::path::Path;
 use std::sync::OnceLock;
 
@@ -36,6 +38,9 @@ use super::choices::{Cuts, Names, by_preset};
 use super::defaults::{self, poisson_ratio_of};
 use super::keys::{EDGES, ROD_KEYS};
 use super::scene::{ElasticScene, OwnKnots};
+use super::tie::Word;
+use tied::TiedKeys;
+
 use crate::LabError;
 use crate::goal::{Goal, GoalOr, budget};
 use crate::preset::Preset;
@@ -50,8 +55,20 @@ use topo_analysis::TimelineSettings;
 #[serde(deny_unknown_fields)]
 struct RodTable {
     /// Name of a knot, a list of names, or `"all"` for the 14 prime knots to seven crossings.
-    #[schemars(example = "3_1")]
-    knot: Names,
+    #[schemars(example = "3_1", extend("x-default" = "one of `knot`, `link`, `braid` and `curve` must be there"))]
+    knot: Option<Names>,
+    /// Name of a link, such as `"hopf"` or `"L6a4"`, or a list of names; instead of `knot`.
+    #[schemars(example = &"hopf", extend("x-default" = "none"))]
+    link: Option<Names>,
+    /// Braid word whose closure is tied, a list of letters or a text of them; instead of `knot`.
+    #[schemars(example = &"1 1", extend("x-unit" = "1", "x-default" = "none"))]
+    braid: Option<Word>,
+    /// File beside the scene with one closed curve or several, in CSV, XYZ or VECT; instead of `knot`.
+    #[schemars(example = &"my.vect", extend("x-default" = "none"))]
+    curve: Option<String>,
+    /// Whether what is tied is tightened first; else it is the curve as it is, smoothed.
+    #[schemars(example = false, extend("x-default" = "true, of a `curve` false"))]
+    tighten: Option<bool>,
     /// L/h, length over radius.
     #[serde(default = "defaults::slenderness")]
     #[schemars(extend("x-unit" = "1", "exclusiveMinimum" = 0), example = 40.0)]
@@ -181,6 +198,7 @@ impl File {
         let (rod, asked) = (&self.rod, self.asked());
         ElasticCase {
             knot: String::new(),
+            tied: None,
             rod: RodParameters {
                 slenderness: rod.slenderness,
                 reading: rod.reading,
@@ -210,6 +228,7 @@ impl File {
             ..
         } = self.case();
         let path = document.path();
+        let (knots, tie) = self.rod.tie(document)?;
         let (asked, goal) = self
             .accuracy
             .with_budget(self.budget.as_deref())
@@ -220,10 +239,8 @@ impl File {
         let beside = path.parent().unwrap_or(Path::new("")).to_owned();
         Ok(ElasticScene {
             folder: folder_of(path)?,
-            knots: match self.rod.knot {
-                Names::One(name) => vec![name],
-                Names::List(names) => names,
-            },
+            knots,
+            tie,
             twists,
             rod,
             imperfection,
@@ -297,6 +314,9 @@ impl ElasticScene {
         keys().faults_of_text(text, path, |document| match Self::described(document) {
             Ok((scene, mut faults)) => {
                 faults.extend(check::unknown_knots(&scene, document));
+                if faults.is_empty() {
+                    faults.extend(check::untied(&scene, document));
+                }
                 faults
             }
             Err(e) => vec![e],
@@ -311,9 +331,14 @@ impl ElasticScene {
     /// `elastic_scenes_come_back_as_written`, `poisson_ratios_come_back`
     pub fn text(&self) -> String {
         let rod = &self.rod;
+        let tied = TiedKeys::of(self);
         let mut file = File {
             rod: RodTable {
-                knot: Names::List(self.knots.clone()),
+                knot: tied.knot,
+                link: tied.link,
+                braid: tied.braid,
+                curve: tied.curve,
+                tighten: tied.tighten,
                 slenderness: rod.slenderness,
                 reading: rod.reading,
                 twist: (!self.twists.is_empty()).then(|| Numbers::List(self.twists.clone())),

@@ -44,7 +44,7 @@ pub fn discharge_frames(
     let inputs = CaseInputs {
         scene,
         case: &case,
-        tight,
+        start: tight.into(),
         table,
     };
     let area = std::f64::consts::PI;

@@ -1,18 +1,18 @@
 //! What the numbers of a case depend on.
 
 use serde_json::json;
-use topo_knots::{Chirality, KnotEntry};
 use topo_rod::Guards;
 
 use super::case::ElasticCase;
 use super::scene::ElasticScene;
+use super::tied::Entry;
 use crate::folder::identity;
 
 /// Changes whenever the same scene gives other numbers than before; finished cases of another version are computed again.
 pub const RESULTS_VERSION: u32 = 5;
 
 /// Identity of a case: everything that its numbers depend on.
-pub(crate) fn fingerprint(scene: &ElasticScene, case: &ElasticCase, entry: &KnotEntry) -> String {
+pub(crate) fn fingerprint(scene: &ElasticScene, case: &ElasticCase, entry: &Entry) -> String {
     let mut all = json!({
         "version": RESULTS_VERSION, "case": case, "knot": entry, "tighten": scene.tighten, "imperfection": case.imperfection,
         "seed": case.seed, "charge": scene.charge, "cuts": scene.cuts, "discharge": scene.discharge,
@@ -55,6 +55,7 @@ pub(super) fn settings_of(scene: &ElasticScene, case: &ElasticCase) -> serde_jso
 }
 
 /// Whether a twisted rod may start from the tight curve or from its mirror image, being the same knot.
-pub(super) fn starts_from_two_images(case: &ElasticCase, entry: &KnotEntry) -> bool {
-    entry.chirality == Chirality::Amphichiral && case.rod.twist.is_some_and(|twist| twist != 0.0)
+pub(super) fn starts_from_two_images(case: &ElasticCase, entry: &Entry) -> bool {
+    let is_twisted = case.rod.twist.is_some_and(|twist| twist != 0.0);
+    is_twisted && entry.is_amphichiral_knot() && case.is_tightened()
 }

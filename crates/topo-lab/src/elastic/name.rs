@@ -7,6 +7,7 @@ use super::case::ElasticCase;
 use super::identity::settings_of;
 use super::own_term::OwnTerm;
 use super::scene::{ElasticScene, OwnKnots};
+use super::tie::Tie;
 use crate::preset::Preset;
 use crate::sweep::{CaseName, Row, value};
 use topo_analysis::{SweepRow, Warnings};
@@ -22,6 +23,10 @@ impl ElasticScene {
         let rod = &case.rod;
         let usual = Self::published(self.preset);
         let name = CaseName::of(&case.knot);
+        let name = match &case.tied {
+            Some(tied) if !tied.word.is_empty() => name.word(&tied.word),
+            _ => name,
+        };
         let name = match rod.twist {
             None => name.word("untwisted"),
             Some(twist) => name.signed("twist", twist),
@@ -58,6 +63,8 @@ impl ElasticScene {
         SweepRow {
             case: self.case_name(case),
             knot: case.knot.clone(),
+            name: case.knot.clone(),
+            components: case.n_components(),
             twist: rod.twist.unwrap_or(0.0),
             reading: rod.reading.name().to_owned(),
             edges: rod.n_edges,
@@ -86,6 +93,7 @@ impl ElasticScene {
         let scene = Self {
             goal: None,
             own_knots: own_knots.as_deref().map(OwnKnots::at),
+            tie: self.tie.as_ref().map(Tie::found_from_anywhere),
             ..self.clone()
         };
         let labels = self.own_terms.iter().map(OwnTerm::label);
@@ -109,6 +117,8 @@ impl Row for SweepRow {
         let blank = blank.clone();
         Self {
             case: blank.case,
+            name: blank.name,
+            components: blank.components,
             slenderness: blank.slenderness,
             twist_ratio: blank.twist_ratio,
             stretch_ratio: blank.stretch_ratio,

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 use serde_json::json;
-use topo_rod::{ChargedRod, Guards, RodBattery, RodSample};
+use topo_rod::{ChargedRod, Guards, RodBattery, RodSample, RodState};
 
 use super::case_run::{CaseInputs, CutResults};
 use super::observable::{Observable, further};
@@ -24,6 +24,9 @@ pub(super) struct CaseResults<'a> {
 /// A vertex of the charged rod.
 #[derive(Serialize)]
 struct ChargedVertex {
+    /// Of a link, from 1.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    component: Option<usize>,
     s: f64,
     x: f64,
     y: f64,
@@ -37,6 +40,9 @@ struct ChargedVertex {
 struct SnapshotVertex {
     cut: f64,
     time: f64,
+    /// Of a link, from 1.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    component: Option<usize>,
     s: f64,
     x: f64,
     y: f64,
@@ -153,22 +159,45 @@ pub(super) fn write_case(made: &CaseResults<'_>, place: &Place<'_>) -> Result<()
 /// Area of the cross-section, in h².
 const AREA: f64 = std::f64::consts::PI;
 
+/// A vertex of a component.
+struct VertexOf {
+    /// Of several, from 1.
+    component: Option<usize>,
+    vertex: usize,
+    /// Arclength along its component, in h.
+    s: f64,
+    rest_length: f64,
+}
+
+/// The vertices of all components, one after the other.
+fn vertices_of(state: &RodState) -> impl Iterator<Item = VertexOf> + '_ {
+    let chains = state.components();
+    let is_link = chains.len() > 1;
+    chains.iter().enumerate().flat_map(move |(c, chain)| {
+        chain.vertices().map(move |vertex| VertexOf {
+            component: is_link.then_some(c + 1),
+            vertex,
+            s: (vertex - chain.first()) as f64 * chain.rest_length(),
+            rest_length: chain.rest_length(),
+        })
+    })
+}
+
 fn charged_vertices(charged: &ChargedRod) -> Vec<ChargedVertex> {
     let state = charged.state();
-    (0..state.n_vertices())
-        .map(|i| {
-            let x = state.vertices()[i];
-            let (s, density) = (i as f64 * state.rest_length(), charged.density()[i] * AREA);
-            ChargedVertex {
-                s,
-                x: x.x,
-                y: x.y,
-                z: x.z,
-                twist: state.twists()[i] / state.rest_length(),
-                energy_density: density,
-            }
-        })
-        .collect()
+    let vertex = |at: VertexOf| {
+        let x = state.vertices()[at.vertex];
+        ChargedVertex {
+            component: at.component,
+            s: at.s,
+            x: x.x,
+            y: x.y,
+            z: x.z,
+            twist: state.twists()[at.vertex] / at.rest_length,
+            energy_density: charged.density()[at.vertex] * AREA,
+        }
+    };
+    vertices_of(state).map(vertex).collect()
 }
 
 fn run_series<'a>(
@@ -177,7 +206,7 @@ fn run_series<'a>(
 ) -> impl Iterator<Item = SeriesRow<'a>> {
     let (discharge, timeline) = (&run.discharge, &run.timeline);
     let samples = discharge.record.samples.iter().enumerate();
-    samples.map(move |(k, s)| series_row(Some(discharge.at), s, Some((timeline, k)), observables))
+    samples.map(move |(k, s)| series_row(Some(run.cut), s, Some((timeline, k)), observables))
 }
 
 fn run_snapshots(battery: &RodBattery, run: &CutResults) -> Vec<SnapshotVertex> {
@@ -187,22 +216,20 @@ fn run_snapshots(battery: &RodBattery, run: &CutResults) -> Vec<SnapshotVertex> 
     for k in snapshot_indices(samples, discharge.start) {
         let state = &samples[k].state;
         let density = battery.energy_density(state);
-        snapshots.extend(
-            state
-                .vertices()
-                .iter()
-                .enumerate()
-                .map(|(i, x)| SnapshotVertex {
-                    cut: discharge.at,
-                    time: samples[k].time,
-                    s: i as f64 * state.rest_length(),
-                    x: x.x,
-                    y: x.y,
-                    z: x.z,
-                    energy_density: density[i] * AREA,
-                    twist: state.twists()[i] / state.rest_length(),
-                }),
-        );
+        snapshots.extend(vertices_of(state).map(|at| {
+            let x = state.vertices()[at.vertex];
+            SnapshotVertex {
+                cut: run.cut,
+                time: samples[k].time,
+                component: at.component,
+                s: at.s,
+                x: x.x,
+                y: x.y,
+                z: x.z,
+                energy_density: density[at.vertex] * AREA,
+                twist: state.twists()[at.vertex] / at.rest_length,
+            }
+        }));
     }
     snapshots
 }
@@ -218,18 +245,22 @@ fn about(made: &CaseResults<'_>) -> Result<About, LabError> {
     let CaseInputs {
         scene,
         case,
-        tight,
+        start,
         table,
     } = *inputs;
-    let entry = table.get(&case.knot)?;
+    let entry = case.entry(table)?;
     let cuts: Vec<_> = runs
         .iter()
-        .map(|CutResults { discharge: d, times, times_after_cut, timeline, row, .. }| {
-            json!({
-                "cut": d.at, "energy_removed_by_cut": d.removed, "elastic_energy_before_cut": d.start, "elastic_energy_after_cut": d.after_cut,
+        .map(|CutResults { discharge: d, cut, times, times_after_cut, timeline, row, .. }| {
+            let mut about = json!({
+                "cut": cut, "energy_removed_by_cut": d.removed, "elastic_energy_before_cut": d.start, "elastic_energy_after_cut": d.after_cut,
                 "tips_parted": d.parted, "times": times, "times_after_cut": times_after_cut, "knot_sequence": timeline.sequence(), "t_untie": row.t_untie, "report": d.record.report,
                 "warnings": row.warnings,
-            })
+            });
+            if case.n_components() > 1 {
+                about["component"] = json!(d.component + 1);
+            }
+            about
         })
         .collect();
     let ledger_residual = runs
@@ -244,7 +275,7 @@ fn about(made: &CaseResults<'_>) -> Result<About, LabError> {
         ledger_residual,
         more: json!({
             "tube": charged.battery().tube(),
-            "start": { "length_over_radius": tight.length_over_radius, "knot": entry },
+            "start": { "length_over_radius": start.length_over_radius(), "knot": entry },
             "guards": Guards::default(),
             "ledger_residual": ledger_residual,
             "charge": charged.record().report,

@@ -3,18 +3,21 @@
 use std::path::Path;
 
 use topo_core::Vector3;
-use topo_core::{CpuClock, Progress, StopReason};
-use topo_knots::identify;
+use topo_core::{CpuClock, CurveError, Polyline, Progress, StopReason};
+use topo_knots::{KnotError, KnotTable, identify};
 use topo_rod::{
-    ChargedRod, CutSite, Discharge, Guards, PhaseReport, RodBattery, RodSample, RunHooks,
+    Chain, ChargedRod, CutCandidate, CutSite, Discharge, Guards, PhaseReport, RodBattery,
+    RodSample, RunHooks,
 };
 
+use super::case::ElasticCase;
 use super::case_run::{CaseInputs, CutResults};
 use super::choices::{Cuts, NEAR_TIE};
 use super::identity::starts_from_two_images;
 use super::imperfection::perturbed;
 use super::observable::further;
 use super::record::{CaseResults, write_case};
+use super::tied::label;
 use crate::LabError;
 use crate::folder::{Outcome, forget_checkpoints};
 use crate::sweep::Place;
@@ -52,28 +55,25 @@ pub(crate) fn charge(
     let CaseInputs {
         scene,
         case,
-        tight,
+        start,
         table,
     } = *inputs;
     let refuse = |source| inputs.refused(source);
-    let entry = table.get(&case.knot)?;
-    let centreline = tight.centreline()?;
-    let battery = RodBattery::new(&case.rod, &scene.accuracy, Guards::default(), &centreline);
+    let entry = case.entry(table)?;
+    let centrelines = start.centrelines()?;
+    let battery = RodBattery::link(&case.rod, &scene.accuracy, Guards::default(), &centrelines);
     let mut battery = battery.map_err(refuse)?;
     for term in &scene.own_terms {
         battery = term.added_to(battery).map_err(refuse)?;
     }
+    if case.tied.is_some() {
+        let kept = entry.verify(battery.centrelines());
+        kept.map_err(|e| inputs.too_coarse(&e))?;
+    }
     if case.imperfection > 0.0 {
-        let start = battery.centreline();
-        let size = case.imperfection * start.length() / battery.tube().start_length;
-        // the mirror image of a knot has the mirror image of its imperfections
-        let moved = if entry.is_mirror_image() {
-            perturbed(&start.mirrored(), size, case.seed).map(|curve| curve.mirrored())
-        } else {
-            perturbed(start, size, case.seed)
-        };
+        let moved = imperfect(&battery, case, entry.is_mirror_image());
         let moved = moved.map_err(|e| refuse(e.into()))?;
-        battery = battery.disturbed(&moved).map_err(refuse)?;
+        battery = battery.disturbed_link(&moved).map_err(refuse)?;
     }
     let mut from = |battery: &RodBattery, image: usize| {
         if let Some(paths) = kept {
@@ -107,6 +107,28 @@ pub(crate) fn charge(
         rod,
         energy_other_image: Some(energy).filter(|_| !has_failed),
     })
+}
+
+/// The start curves of a battery with the imperfections of a case, others in each component.
+///
+/// The mirror image of a knot has the mirror image of its imperfections.
+fn imperfect(
+    battery: &RodBattery,
+    case: &ElasticCase,
+    is_mirror_image: bool,
+) -> Result<Vec<Polyline>, CurveError> {
+    let start = battery.centrelines();
+    let length: f64 = start.iter().map(Polyline::length).sum();
+    let size = case.imperfection * length / battery.tube().start_length;
+    let moved = |(k, curve): (usize, &Polyline)| {
+        let seed = case.seed.wrapping_add(k as u64);
+        if is_mirror_image {
+            perturbed(&curve.mirrored(), size, seed).map(|curve| curve.mirrored())
+        } else {
+            perturbed(curve, size, seed)
+        }
+    };
+    start.iter().enumerate().map(moved).collect()
 }
 
 /// Runs a case and writes its folder; `None` when interrupted: then its checkpoints stay.
@@ -183,7 +205,7 @@ fn finish(made: &CaseResults<'_>, place: &Place<'_>) -> Result<(), LabError> {
     forget_checkpoints(folder, "")
 }
 
-/// Where the scene cuts the rod.
+/// Where the scene cuts the rod, s/L along all components.
 fn sites(inputs: &CaseInputs<'_>, charged: &ChargedRod) -> Vec<f64> {
     let CaseInputs { scene, case, .. } = *inputs;
     match &scene.cuts {
@@ -194,15 +216,54 @@ fn sites(inputs: &CaseInputs<'_>, charged: &ChargedRod) -> Vec<f64> {
                 .cloned()
                 .unwrap_or_default()
         }
-        Cuts::Argmax => vec![charged.cut_candidates(0.0)[0].at],
+        Cuts::Argmax => vec![along(charged, &charged.cut_candidates(0.0)[0])],
         Cuts::NearTies => charged
             .cut_candidates(NEAR_TIE)
             .iter()
-            .map(|c| c.at)
+            .map(|c| along(charged, c))
             .collect(),
         Cuts::All(k) => (0..*k).map(|i| i as f64 / *k as f64).collect(),
         Cuts::At(places) => places.clone(),
     }
+}
+
+/// Share of a length within which a place counts as the next component's first.
+const END: f64 = 1e-9;
+
+/// Place of a site of a component, s/L along all of them, one after the other.
+fn place(charged: &ChargedRod, component: usize, at: f64) -> f64 {
+    let chains = charged.state().components();
+    if chains.len() == 1 {
+        return at;
+    }
+    let length = |of: &[Chain]| of.iter().map(Chain::length).sum::<f64>();
+    (length(&chains[..component]) + at * chains[component].length()) / length(chains)
+}
+
+/// The same of a candidate.
+fn along(charged: &ChargedRod, found: &CutCandidate) -> f64 {
+    place(charged, found.component, found.at)
+}
+
+/// The site at a place s/L along all components.
+fn site(charged: &ChargedRod, place: f64) -> CutSite {
+    let chains = charged.state().components();
+    if chains.len() == 1 {
+        return CutSite::At(place);
+    }
+    let mut s = place * chains.iter().map(Chain::length).sum::<f64>();
+    let last = chains.len() - 1;
+    for (component, chain) in chains.iter().enumerate() {
+        let at = s / chain.length();
+        if at < 1.0 - END || component == last {
+            return CutSite::On {
+                component,
+                at: at.clamp(0.0, 1.0 - f64::EPSILON),
+            };
+        }
+        s = (s - chain.length()).max(0.0);
+    }
+    CutSite::At(place)
 }
 
 /// Follows the discharge after a cut; its row is still blank. `None` when interrupted.
@@ -212,7 +273,8 @@ fn follow(
     at: f64,
     hooks: &mut RunHooks<'_>,
 ) -> Result<Option<CutResults>, LabError> {
-    let discharge = inputs.discharge(charged, CutSite::At(at), &inputs.scene.discharge, hooks)?;
+    let site = site(charged, at);
+    let discharge = inputs.discharge(charged, site, &inputs.scene.discharge, hooks)?;
     if hooks.is_interrupted() {
         return Ok(None);
     }
@@ -227,6 +289,7 @@ fn follow(
         times: released(discharge.start),
         times_after_cut: released(discharge.after_cut),
         cpu_seconds: discharge.record.report.cpu_seconds + clock.seconds(),
+        cut: place(charged, discharge.component, discharge.at),
         discharge,
         timeline,
         row: SweepRow::default(),
@@ -241,7 +304,7 @@ fn failure(charged: &ChargedRod, runs: &[CutResults]) -> Option<String> {
     }
     runs.iter().find_map(|run| {
         let stop = &run.discharge.record.report.stop;
-        let at = run.discharge.at;
+        let at = run.cut;
         (!stop.is_success()).then(|| format!("discharge after the cut at {at:.4} stopped: {stop}"))
     })
 }
@@ -249,7 +312,11 @@ fn failure(charged: &ChargedRod, runs: &[CutResults]) -> Option<String> {
 /// Knot types of a discharge. Those of a mirror image are found on the image of its shapes, which is that of the knot itself: a
 /// type is that of closures in some directions, and these would be others.
 fn timeline(inputs: &CaseInputs<'_>, discharge: &Discharge) -> Result<Timeline, LabError> {
-    let is_mirror_image = inputs.table.get(&inputs.case.knot)?.is_mirror_image();
+    if inputs.case.n_components() > 1 {
+        // the type of an open rod among closed ones is not defined by closures of it alone
+        return Ok(Timeline::default());
+    }
+    let is_mirror_image = inputs.case.entry(inputs.table)?.is_mirror_image();
     let seen = |s: &RodSample| -> Vec<Vector3<f64>> {
         let side = if is_mirror_image { -1.0 } else { 1.0 };
         let vertices = s.state.vertices().iter();
@@ -286,6 +353,14 @@ fn phase_warnings(phase: &str, report: &PhaseReport, warnings: &mut Warnings) {
     }
 }
 
+/// Linking numbers of a charged link, 1 and 2, 1 and 3 and so on.
+fn linking(report: &PhaseReport) -> String {
+    let pairs = report.own.linking.iter();
+    // not -0
+    let whole = pairs.map(|pair| (pair.start.round() + 0.0).to_string());
+    whole.collect::<Vec<_>>().join(";")
+}
+
 /// The part of a row that all cuts share.
 fn charged_row(inputs: &CaseInputs<'_>, charged: &ChargedRod) -> SweepRow {
     let CaseInputs { case, table, .. } = *inputs;
@@ -296,6 +371,7 @@ fn charged_row(inputs: &CaseInputs<'_>, charged: &ChargedRod) -> SweepRow {
         min_distance_over_contact: report.own.min_distance_over_contact,
         steps: report.n_steps,
         rejected: report.rejections.total(),
+        linking: linking(report),
         ..inputs.scene.blank_row(inputs.case)
     };
     if let Some(last) = record.samples.last() {
@@ -311,11 +387,9 @@ fn charged_row(inputs: &CaseInputs<'_>, charged: &ChargedRod) -> SweepRow {
         row.warnings
             .push("no contact: strands pass through each other");
     }
-    match identify(charged.state().vertices(), table) {
-        Ok(kind) if kind.fits(&case.knot) => {}
-        Ok(kind) => row.warnings.push(Warning::Retied {
-            found: kind.label(),
-        }),
+    match found(case, charged, table) {
+        Ok(None) => {}
+        Ok(Some(found)) => row.warnings.push(Warning::Retied { found }),
         Err(error) => row
             .warnings
             .push(format!("the charged rod has no knot type: {error}")),
@@ -323,12 +397,35 @@ fn charged_row(inputs: &CaseInputs<'_>, charged: &ChargedRod) -> SweepRow {
     row
 }
 
+/// The type of a charged rod, if it is not that of its case.
+fn found(
+    case: &ElasticCase,
+    charged: &ChargedRod,
+    table: &KnotTable,
+) -> Result<Option<String>, LabError> {
+    let state = charged.state();
+    let Some(tied) = &case.tied else {
+        let kind = identify(state.vertices(), table)?;
+        return Ok((!kind.fits(&case.knot)).then(|| kind.label()));
+    };
+    let refuse = |source| LabError::Rod {
+        case: tied.name.clone(),
+        source,
+    };
+    let curves = state.centrelines().map_err(refuse)?;
+    match tied.entry.verify(&curves) {
+        Ok(()) => Ok(None),
+        Err(KnotError::Mismatch { .. }) => Ok(Some(label(&curves, table)?)),
+        Err(error) => Err(error.into()),
+    }
+}
+
 fn discharge_row(base: &SweepRow, run: &CutResults, cpu_seconds: f64) -> SweepRow {
     let report = &run.discharge.record.report;
     let at = |times: &DischargeTimes, share| times.at(share).map(|t| t.value);
     let (times, after_cut) = (&run.times, &run.times_after_cut);
     let mut row = SweepRow {
-        cut: run.discharge.at,
+        cut: run.cut,
         t50: at(times, 0.5),
         t90: at(times, 0.9),
         t95: at(times, 0.95),
@@ -358,8 +455,6 @@ fn discharge_row(base: &SweepRow, run: &CutResults, cpu_seconds: f64) -> SweepRo
 
 #[cfg(test)]
 mod tests {
-    use topo_knots::KnotTable;
-
     use super::*;
     use crate::{ElasticScene, Preset};
     use topo_knots::{TightenSettings, tighten_entry};
@@ -385,7 +480,7 @@ mod tests {
             let inputs = CaseInputs {
                 scene: &scene,
                 case: &case,
-                tight: &tight,
+                start: (&tight).into(),
                 table: &table,
             };
             let charged = charge(&inputs, &mut RunHooks::default(), None).unwrap();
@@ -432,8 +527,9 @@ mod tests {
             ("6_3", None, false),
             ("6_2", Some(0.5), false),
         ] {
-            let entry = table.get(knot).unwrap();
-            assert_eq!(starts_from_two_images(&case(knot, twist), &entry), two);
+            let case = case(knot, twist);
+            let entry = case.entry(&table).unwrap();
+            assert_eq!(starts_from_two_images(&case, &entry), two);
         }
     }
 }

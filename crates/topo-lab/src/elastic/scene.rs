@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, HashSet};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use serde::Serialize;
 use topo_knots::{KnotTable, TightenSettings};
@@ -14,6 +15,8 @@ use super::defaults;
 use super::keys::{EDGES, ROD_KEYS};
 use super::observable::Observable;
 use super::own_term::OwnTerm;
+use super::tie::Tie;
+use super::tied::Tied;
 use crate::LabError;
 use crate::goal::Goal;
 use crate::preset::Preset;
@@ -27,6 +30,9 @@ pub struct ElasticScene {
     pub folder: String,
     /// Knot names; "all" stands for the fourteen prime knots of up to seven crossings.
     pub knots: Vec<String>,
+    /// What is tied instead of the tight shapes of these knots.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tie: Option<Tie>,
     /// θ'h of the cases; empty: no twist is modelled.
     pub twists: Vec<f64>,
     /// Material, reading and resolution, its twist not yet set.
@@ -97,6 +103,9 @@ impl ElasticCase {
     /// The charged state, whatever the resolution: knot, twist, and what is not as published.
     pub fn state(&self) -> String {
         let mut name = format!("{} {}", self.knot, self.rod.twist.unwrap_or(0.0));
+        if let Some(tied) = &self.tied {
+            name = format!("{name} {}", tied.word);
+        }
         let published = ElasticScene::published(Preset::default()).case(&self.knot, None);
         for key in ROD_KEYS.iter().filter(|key| key.key != EDGES) {
             match key.read(self) {
@@ -116,6 +125,7 @@ impl ElasticScene {
         Self {
             folder: "elastic".to_owned(),
             knots: vec!["all".to_owned()],
+            tie: None,
             twists: Numbers::Range {
                 from: -2.0,
                 to: 2.0,
@@ -156,7 +166,8 @@ impl ElasticScene {
     /// The cases of the scene: knots in the order given, twists inside, the values of the [axes](Self::axes) innermost.
     ///
     /// # Errors
-    /// An unknown knot, or one that is there twice, be it by an alias or besides \"all\".
+    /// An unknown knot, or one that is there twice, be it by an alias or besides \"all\"; curves that cannot be read or leave no room
+    /// for the fibre.
     pub fn cases(&self, table: &KnotTable) -> Result<Vec<ElasticCase>, LabError> {
         let mut names: Vec<String> = Vec::new();
         let mut seen = HashSet::new();
@@ -179,11 +190,23 @@ impl ElasticScene {
         } else {
             self.twists.iter().copied().map(Some).collect()
         };
-        Ok(names
-            .iter()
-            .flat_map(|knot| twists.iter().map(move |t| self.case(knot, *t)))
-            .flat_map(|case| product(&ROD_KEYS, &self.axes, case))
-            .collect())
+        let of = |knot: &str, tied: Option<&Arc<Tied>>| -> Vec<ElasticCase> {
+            let case = |t: &Option<f64>| ElasticCase {
+                tied: tied.cloned(),
+                ..self.case(knot, *t)
+            };
+            let twisted = twists.iter().map(case);
+            twisted
+                .flat_map(|case| product(&ROD_KEYS, &self.axes, case))
+                .collect()
+        };
+        let Some(tie) = &self.tie else {
+            return Ok(names.iter().flat_map(|knot| of(knot, None)).collect());
+        };
+        let made = tie.made(&names, table)?.iter();
+        let cases: Vec<_> = made.flat_map(|tied| of(&tied.name, Some(tied))).collect();
+        self.check_room(&cases)?;
+        Ok(cases)
     }
 
     /// Knots of the cases, each once.
@@ -200,6 +223,7 @@ impl ElasticScene {
     pub(crate) fn case(&self, knot: &str, twist: Option<f64>) -> ElasticCase {
         ElasticCase {
             knot: knot.to_owned(),
+            tied: None,
             rod: RodParameters {
                 twist,
                 ..self.rod.clone()

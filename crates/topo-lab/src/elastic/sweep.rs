@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use rayon::prelude::*;
-use topo_knots::{KnotTable, TightKnot};
+use topo_knots::KnotTable;
 
 use super::battery::Elastic;
 use super::case::ElasticCase;
@@ -14,6 +14,8 @@ use super::identity::fingerprint;
 use super::print;
 use super::run;
 use super::scene::ElasticScene;
+use super::starts;
+use super::tied::{Made, Start};
 use crate::LabError;
 use crate::battery::{Battery, Stage};
 use crate::cost::{Cost, Estimate};
@@ -62,8 +64,8 @@ impl<'a> Rods<'a> {
 impl Experiment for Rods<'_> {
     type Case = ElasticCase;
     type Row = SweepRow;
-    /// Tight shapes by name; why not where there is none.
-    type Start = BTreeMap<String, Result<TightKnot, String>>;
+    /// Starts by name; why not where there is none.
+    type Start = BTreeMap<String, Result<Made, String>>;
 
     fn battery(&self) -> &'static dyn Battery {
         &Elastic
@@ -86,7 +88,7 @@ impl Experiment for Rods<'_> {
     }
 
     fn fingerprint(&self, case: &ElasticCase) -> Result<String, LabError> {
-        let entry = self.table.get(&case.knot)?;
+        let entry = case.entry(&self.table)?;
         Ok(fingerprint(&self.scene, case, &entry))
     }
 
@@ -95,13 +97,19 @@ impl Experiment for Rods<'_> {
     }
 
     fn cost(&self, case: &ElasticCase, n_rows: Option<usize>) -> Result<Cost, LabError> {
-        let entry = self.table.get(&case.knot)?;
+        let entry = case.entry(&self.table)?;
         Ok(cost_of(&self.scene, case, &entry, n_rows))
     }
 
     fn stages_before(&self, settings: &SweepSettings) -> Result<Vec<Stage>, LabError> {
         let Self { scene, table } = self;
-        let (names, out) = (scene.knots_used(table)?, &settings.out);
+        let out = &settings.out;
+        if scene.tie.is_some() {
+            let estimate =
+                starts::estimate(&scene.cases(table)?, &scene.tighten, out, settings.jobs);
+            return Ok(vec![Stage::shapes(estimate)]);
+        }
+        let names = scene.knots_used(table)?;
         let estimate = Estimate::of_shapes(&names, table, &scene.tighten, out, settings.jobs)?;
         Ok(vec![Stage::shapes(estimate)])
     }
@@ -112,6 +120,9 @@ impl Experiment for Rods<'_> {
         settings: &SweepSettings,
         progress: &(dyn Fn(Event<'_>) + Sync),
     ) -> Result<Self::Start, LabError> {
+        if self.scene.tie.is_some() {
+            return starts::make(todo, &self.scene.tighten, settings, progress);
+        }
         let mut names: Vec<String> = todo.iter().map(|c| c.knot.clone()).collect();
         names.sort();
         names.dedup();
@@ -125,7 +136,9 @@ impl Experiment for Rods<'_> {
                 progress,
             );
             match made {
-                Ok(mut shapes) => Ok(shapes.remove(&name).map(|shape| (name, Ok(shape)))),
+                Ok(mut shapes) => Ok(shapes
+                    .remove(&name)
+                    .map(|shape| (name, Ok(Made::Knot(Box::new(shape)))))),
                 Err(LabError::Knot(error)) => Ok(Some((name, Err(error.to_string())))),
                 Err(error) => Err(error),
             }
@@ -144,8 +157,8 @@ impl Experiment for Rods<'_> {
         shapes: &Self::Start,
         place: &Place<'_>,
     ) -> Result<Option<Outcome<SweepRow>>, LabError> {
-        let tight = match shapes.get(&case.knot) {
-            Some(Ok(tight)) => tight,
+        let made = match shapes.get(&case.start_name()) {
+            Some(Ok(made)) => made,
             Some(Err(reason)) => {
                 return Err(LabError::Shape {
                     knot: case.knot.clone(),
@@ -155,10 +168,13 @@ impl Experiment for Rods<'_> {
             // interrupted while shapes were made
             None => return Ok(None),
         };
+        let Some(start) = Start::of(made, case) else {
+            return Ok(None);
+        };
         let inputs = CaseInputs {
             scene: &self.scene,
             case,
-            tight,
+            start,
             table: &self.table,
         };
         run::run(&inputs, place)

@@ -280,7 +280,7 @@ fn discharge(
     let job = CaseInputs {
         scene,
         case: &of,
-        tight: shapes.get(&case.knot)?,
+        start: shapes.get(&case.knot)?.into(),
         table,
     };
     measured_discharge(&job, site, interrupt).ok()

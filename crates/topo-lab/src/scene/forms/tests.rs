@@ -67,7 +67,7 @@ const WRONG: &[Wrong] = &[
     (COLLOID, "sides = \"walled\"", "\"walled\"", &["nematic.sides", "{ walled = {} }"]),
     (COLLOID, "field = { vector = [0, 0, 0.1] }", "field", &["nematic.field.anisotropy is missing", "anisotropy = 1.0"]),
     (COLLOID, "[switch]\nto = \"free\"", "\"free\"", &["switch.to", "{ free = \"cut-cell\" }", "\"keep\""]),
-    ("", "[rod]", "rod", &["rod.knot is missing", "knot = \"3_1\""]),
+    ("", "[rod]", "rod", &["rod.knot is missing", "knot = \"3_1\"", "`curve`"]),
     // words
     (ROD, "reading = \"shrnk\"", "\"shrnk\"", &["did you mean \"shrunk\"?"]),
     (ROD, "[accuracy]\npreset = \"best\"", "\"best\"", &["accuracy.preset = \"best\"", "\"draft\", \"standard\", \"paper\" or \"reference\""]),
@@ -197,15 +197,15 @@ fn all_faults_of_a_file_are_found() {
             .collect()
     };
     // of form
-    let text = "[rod]\ntwits = 2\nreading = \"soft\"\n[rod.contact]\nstiffness = \"20\"\n[accuracy]\nedges = 1.5\n";
+    let text = "[rod]\nknot = \"3_1\"\ntwits = 2\nreading = \"soft\"\n[rod.contact]\nstiffness = \"20\"\n[accuracy]\nedges = 1.5\n";
     let all = [
-        (1, "rod.knot"),
-        (2, "rod.twits"),
-        (3, "rod.reading"),
-        (5, "rod.contact.stiffness"),
-        (7, "accuracy.edges"),
+        (3, "rod.twits"),
+        (4, "rod.reading"),
+        (6, "rod.contact.stiffness"),
+        (8, "accuracy.edges"),
     ];
     assert_eq!(found(text.as_bytes()), at(&all));
+    assert_eq!(found(b"[rod]\n"), at(&[(1, "rod.knot")]));
     // of value, a knot that is not there among them
     let text = "[rod]\nknot = [\"3_1\", \"3_7\"]\nslenderness = -1\nimperfection = 2\n[discharge]\nuntil_released = 2\n[accuracy]\ngamma = 1.0\n";
     let all = [

@@ -67,6 +67,10 @@ fn with(base: &str, key: &str, table: &str, line: &str) -> String {
             toml::from_str(&dotted).unwrap_or_else(|e| panic!("{dotted}: {e}")),
         );
     }
+    // what is tied is said once
+    if ["rod.link", "rod.braid", "rod.curve"].contains(&key) {
+        crate::scene::remove("rod.knot", &mut scene);
+    }
     toml::to_string(&scene).unwrap()
 }
 
