@@ -46,6 +46,7 @@ fn mirrored(row: &SweepRow, name: &str, case: &str) -> SweepRow {
     SweepRow {
         case: case.to_owned(),
         knot: format!("m{name}"),
+        name: format!("m{name}"),
         twist: -row.twist,
         writhe: -row.writhe,
         total_twist: -row.total_twist,

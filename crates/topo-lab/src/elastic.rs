@@ -23,6 +23,7 @@ mod probe;
 mod record;
 mod run;
 mod scene;
+mod sites;
 mod starts;
 mod sweep;
 mod tie;

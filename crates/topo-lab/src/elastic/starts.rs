@@ -5,7 +5,7 @@ use std::path::Path;
 
 use rayon::prelude::*;
 use topo_knots::{
-    KnotError, TightenSettings, ideal_link_until, ideal_until, is_kept, is_link_kept,
+    KnotError, KnotTable, TightenSettings, ideal_link_until, ideal_until, is_kept, is_link_kept,
 };
 
 use super::case::ElasticCase;
@@ -13,7 +13,7 @@ use super::probe::ROD_PROBE;
 use super::tied::{Entry, Made, Tied};
 use crate::LabError;
 use crate::cost::{Estimate, Speed, estimate as estimated, threads};
-use crate::knots::{cost, knots_folder};
+use crate::knots::{cost, knots_folder, tight_shapes};
 use crate::progress::{Event, SweepSettings};
 
 /// Starts by name; why not where there is none.
@@ -45,6 +45,36 @@ pub(super) fn estimate(
         .map(|tied| cost(tied.entry.crossing_number(), settings))
         .collect();
     estimated(&costs, Speed::of(&ROD_PROBE, &[]), threads(jobs), true)
+}
+
+/// Tight shapes of the knots of the cases, in parallel; fewer when interrupted.
+pub(super) fn of_knots(
+    todo: &[&ElasticCase],
+    table: &KnotTable,
+    tighten: &TightenSettings,
+    settings: &SweepSettings,
+    progress: &(dyn Fn(Event<'_>) + Sync),
+) -> Result<Starts, LabError> {
+    let mut names: Vec<String> = todo.iter().map(|c| c.knot.clone()).collect();
+    names.sort();
+    names.dedup();
+    let shape = |name: String| {
+        let one = std::slice::from_ref(&name);
+        let (out, interrupt) = (&settings.out, &settings.interrupt);
+        match tight_shapes(one, table, tighten, out, interrupt, progress) {
+            Ok(mut shapes) => Ok(shapes
+                .remove(&name)
+                .map(|shape| (name, Ok(Made::Knot(Box::new(shape)))))),
+            Err(LabError::Knot(error)) => Ok(Some((name, Err(error.to_string())))),
+            Err(error) => Err(error),
+        }
+    };
+    let made: Vec<_> = names
+        .into_par_iter()
+        .with_max_len(1)
+        .map(shape)
+        .collect::<Result<_, LabError>>()?;
+    Ok(made.into_iter().flatten().collect())
 }
 
 /// Makes the starts of the cases, in parallel; stops early when interrupted.

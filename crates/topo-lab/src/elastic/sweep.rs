@@ -3,7 +3,6 @@
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
-use rayon::prelude::*;
 use topo_knots::KnotTable;
 
 use super::battery::Elastic;
@@ -21,7 +20,6 @@ use crate::battery::{Battery, Stage};
 use crate::cost::{Cost, Estimate};
 use crate::folder::Outcome;
 use crate::goal::{Choice, ErrorRow, errors_of_rods};
-use crate::knots::tight_shapes;
 use crate::progress::{Event, SweepSettings};
 use crate::sweep::{self, Experiment, Place, SweepReport};
 use topo_analysis::SweepRow;
@@ -120,35 +118,11 @@ impl Experiment for Rods<'_> {
         settings: &SweepSettings,
         progress: &(dyn Fn(Event<'_>) + Sync),
     ) -> Result<Self::Start, LabError> {
-        if self.scene.tie.is_some() {
-            return starts::make(todo, &self.scene.tighten, settings, progress);
+        let (tighten, table) = (&self.scene.tighten, &self.table);
+        match self.scene.tie {
+            Some(_) => starts::make(todo, tighten, settings, progress),
+            None => starts::of_knots(todo, table, tighten, settings, progress),
         }
-        let mut names: Vec<String> = todo.iter().map(|c| c.knot.clone()).collect();
-        names.sort();
-        names.dedup();
-        let shape = |name: String| {
-            let made = tight_shapes(
-                std::slice::from_ref(&name),
-                &self.table,
-                &self.scene.tighten,
-                &settings.out,
-                &settings.interrupt,
-                progress,
-            );
-            match made {
-                Ok(mut shapes) => Ok(shapes
-                    .remove(&name)
-                    .map(|shape| (name, Ok(Made::Knot(Box::new(shape)))))),
-                Err(LabError::Knot(error)) => Ok(Some((name, Err(error.to_string())))),
-                Err(error) => Err(error),
-            }
-        };
-        let made: Vec<_> = names
-            .into_par_iter()
-            .with_max_len(1)
-            .map(shape)
-            .collect::<Result<_, LabError>>()?;
-        Ok(made.into_iter().flatten().collect())
     }
 
     fn run(
