@@ -17,6 +17,9 @@ pub type Size = [u32; 2];
 /// Sends what a page found out, `report` in its script, to the frame around it.
 pub const SEND: &str = "parent.postMessage(JSON.stringify(report), '*');";
 
+/// How often a page is asked for its report.
+const N_TRIES: usize = 3;
+
 impl Browser {
     /// The browser of this machine; panics where there is none.
     pub fn start() -> Self {
@@ -58,14 +61,17 @@ impl Browser {
         String::from_utf8_lossy(&output.stdout).into_owned()
     }
 
-    /// What the script of a page sent by [`SEND`].
+    /// What the script of a page sent by [`SEND`]. On a loaded machine Chromium now and then ends before the page has drawn, so it
+    /// is asked again.
     pub fn report(&self, address: &str, size: Size, budget: u32) -> serde_json::Value {
-        let dom = self.show(address, size, budget, &["--dump-dom"]);
-        let title = dom.split_once("<title>REPORT");
-        let title = title.and_then(|t| t.1.split_once("</title>"));
-        let text = title
-            .unwrap_or_else(|| panic!("no report from {address}"))
-            .0;
+        let ask = |_| {
+            let dom = self.show(address, size, budget, &["--dump-dom"]);
+            let title = dom.split_once("<title>REPORT")?;
+            Some(title.1.split_once("</title>")?.0.to_owned())
+        };
+        let text = (0..N_TRIES)
+            .find_map(ask)
+            .unwrap_or_else(|| panic!("no report from {address}"));
         serde_json::from_str(
             &text
                 .replace("&lt;", "<")
