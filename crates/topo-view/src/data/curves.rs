@@ -9,6 +9,9 @@ use std::path::Path;
 /// A vertex of `charged.csv` or `snapshots.csv`: lengths in h, density in E_b h^2.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 struct Vertex {
+    /// Of a link: counted from 1.
+    #[serde(default)]
+    component: usize,
     #[serde(default)]
     cut: f64,
     #[serde(default)]
@@ -20,6 +23,18 @@ struct Vertex {
     z: f64,
     #[serde(default)]
     energy_density: f64,
+}
+
+/// The vertices of a table; those of a link are refused, as pictures would join its components.
+fn vertices(path: &Path) -> Result<Vec<Vertex>, ViewError> {
+    let all: Vec<Vertex> = read_csv(path)?;
+    if all.iter().any(|v| v.component > 1) {
+        return Err(ViewError::Table {
+            path: path.to_owned(),
+            reason: "it is a link: only shapes of one component are drawn and exported".to_owned(),
+        });
+    }
+    Ok(all)
 }
 
 /// A curve with its arc length and energy density.
@@ -37,7 +52,7 @@ impl Curve {
     /// Reads `charged.csv` of a case, or a knot's `x,y,z`.
     pub fn read(path: &Path) -> Result<Self, ViewError> {
         let mut curve = Self::default();
-        for v in read_csv::<Vertex>(path)? {
+        for v in vertices(path)? {
             curve.push(&v);
         }
         if curve.points.len() < 3 {
@@ -71,7 +86,7 @@ pub struct Snapshot {
 /// Reads `snapshots.csv`, in order of the file.
 pub fn snapshots(path: &Path) -> Result<Vec<Snapshot>, ViewError> {
     let mut shots: Vec<Snapshot> = Vec::new();
-    for v in read_csv::<Vertex>(path)? {
+    for v in vertices(path)? {
         match shots.last_mut() {
             Some(s) if s.cut == v.cut && s.time == v.time => s.curve.push(&v),
             _ => {

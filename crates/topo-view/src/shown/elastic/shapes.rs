@@ -41,6 +41,7 @@ fn draw(cases: &Cases) -> Result<Option<Drawn>, ViewError> {
     let rows = cases.first_rows();
     let rows: Vec<&Row> = rows
         .into_iter()
+        .filter(|r| r.number("components").is_none_or(|n| n == 1.0))
         .filter(|r| cases.case_folder(r).join("charged.csv").exists())
         .collect();
     if rows.is_empty() {
