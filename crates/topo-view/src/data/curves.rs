@@ -31,7 +31,7 @@ fn vertices(path: &Path) -> Result<Vec<Vertex>, ViewError> {
     if all.iter().any(|v| v.component > 1) {
         return Err(ViewError::Table {
             path: path.to_owned(),
-            reason: "it is a link: only shapes of one component are drawn and exported".to_owned(),
+            reason: "it is a link: only shapes of one component are drawn".to_owned(),
         });
     }
     Ok(all)

@@ -13,6 +13,9 @@ use topo_rod::Tube;
 /// A vertex of `charged.csv` or `snapshots.csv`.
 #[derive(Debug, Clone, Copy, Deserialize)]
 struct Vertex {
+    /// Of a link: counted from 1.
+    #[serde(default)]
+    component: usize,
     #[serde(default)]
     cut: Option<f64>,
     #[serde(default)]
@@ -61,6 +64,12 @@ pub fn write(
         .with("units.curvature", "1/h")
         .with("units.twist", "1/h");
     let charged: Vec<Vertex> = table(case, "charged.csv")?;
+    if charged.iter().any(|v| v.component > 1) {
+        return Err(ViewError::Table {
+            path: case.join("charged.csv"),
+            reason: "it is a link: only shapes of one component are exported".to_owned(),
+        });
+    }
     let charged = Shape::new(&charged, true, case)?;
     let vertices: Vec<Vertex> = table(case, "snapshots.csv")?;
     let mut cuts: Vec<(f64, Vec<Shape>)> = Vec::new();
@@ -212,6 +221,7 @@ mod tests {
         let vertex = |i: usize| {
             let a = i as f64 / n as f64 * TAU;
             Vertex {
+                component: 0,
                 cut: None,
                 time: None,
                 s: i as f64 * TAU * 4.0 / n as f64,
