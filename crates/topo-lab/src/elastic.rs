@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod battery;
+mod breaking;
 mod by_goal;
 mod case;
 mod case_run;
@@ -23,6 +24,7 @@ mod probe;
 mod record;
 mod run;
 mod scene;
+mod si;
 mod sites;
 mod starts;
 mod sweep;
@@ -45,6 +47,7 @@ pub use observable::Observable;
 pub use own_term::OwnTerm;
 pub(crate) use probe::ROD_PROBE;
 pub use scene::{ElasticScene, OwnKnots};
+pub use si::Si;
 pub use sweep::{ElasticReport, Rods, estimate_sweep, run_sweep};
 pub use tie::Tie;
 pub use tied::Tied;
