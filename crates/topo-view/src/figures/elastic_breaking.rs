@@ -156,7 +156,13 @@ fn draw(context: &Context) -> Result<Drawn, ViewError> {
     canvas.letter(8.0, 18.0, "a");
     let a = panel(&times, 12.0, absolute.with_room(KEY_HEIGHT, HEIGHT));
     let key = legend(&a, &times, &mut canvas);
-    columns(&a, &times, "a", key, (&mut canvas, &mut table));
+    columns(
+        &a,
+        &times,
+        "a",
+        (key, KEY_HEIGHT),
+        (&mut canvas, &mut table),
+    );
     canvas.letter(8.0, 224.0, "b");
     let top = bounds(relative.all()).1.max(1.2 * SLOW);
     let axis = Axis::linear(
@@ -172,7 +178,7 @@ fn draw(context: &Context) -> Result<Drawn, ViewError> {
         line(at.to_vec(), "#7a828c", 0.9)
     };
     let slow = (0..60).map(dash).collect();
-    columns(&b, &relative, "b", slow, (&mut canvas, &mut table));
+    columns(&b, &relative, "b", (slow, 0.0), (&mut canvas, &mut table));
     names(&b, &relative, &mut canvas);
     canvas.footnote(&feet(&sweep, &cut, context));
     Ok(Drawn {
@@ -212,17 +218,19 @@ fn columns(
     panel: &Panel,
     times: &Times<'_>,
     letter: &str,
-    more: Vec<Plot>,
+    (more, room): (Vec<Plot>, f64),
     (canvas, table): (&mut Canvas, &mut Table),
 ) {
-    let (low, high) = panel.y.range;
+    let low = panel.y.range.0;
+    // below what is written into the panel
+    let high = panel.y.value(1.0 - room / panel.size[1]);
     let rules = 1..times.knots.len();
     let rule = |k: usize| line(vec![(k as f64, low), (k as f64, high)], "#e6e8eb", 0.6);
     let mut plots: Vec<Plot> = rules.map(rule).collect();
     for (k, (knot, tied)) in times.knots.iter().zip(&times.ties).enumerate() {
         if let Some([low, high]) = *tied {
             let x = k as f64 + 0.5;
-            plots.push(line(vec![(x, low), (x, high)], TIES, 9.0));
+            plots.push(line(vec![(x, low), (x, high)], TIES, 36.0));
             table.row(&[letter, knot, "near-ties"], &[x, f64::NAN, low, high]);
         }
     }
