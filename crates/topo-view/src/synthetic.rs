@@ -98,6 +98,7 @@ fn cut(knot: &str, k: usize, twist: f64, c: usize) -> Cut {
     Cut {
         case: format!("{knot}_twist{twist:+.2}_shrunk_n{N}"),
         knot: knot.to_owned(),
+        components: 1,
         twist,
         cut: 0.1 + 0.3 * c as f64,
         reading: "shrunk".to_owned(),
