@@ -222,7 +222,13 @@ impl RodBattery {
         })
     }
 
-    /// The same battery started from the mirror image of its curve; the twist is not mirrored.
+    /// The same battery started from the mirror image of its curve.
+    ///
+    /// The rods are the same: neither their twist nor their natural shape is mirrored. It is the mirror image of this battery with the
+    /// opposite twist and the [mirrored](RestShape::mirrored) natural shape.
+    ///
+    /// # Validation
+    /// `law_fibres_with_a_natural_shape_are_mirrored_with_it`
     ///
     /// # Errors
     /// As [`new`](Self::new); none in practice, since the curve itself was accepted.

@@ -8,6 +8,7 @@ use topo_rod::{IntegratorKind, Reading, RodError};
 use super::case::ElasticCase;
 use super::cost::BYTES;
 use super::keys::{EDGES, ROD_KEYS};
+use super::rest::{RestKeys, TWIST};
 use super::scene::ElasticScene;
 use crate::LabError;
 use crate::scene::{AxisValue, Document, check_count, product};
@@ -57,6 +58,9 @@ pub(super) fn faults(
     see(scene.charge.checked().map(drop).map_err(refuse));
     let has_twist = !scene.twists.is_empty();
     see(scene.discharge.checked(has_twist).map(drop).map_err(refuse));
+    if let Some(rest) = scene.rest.as_ref().filter(|rest| !rest.has_files()) {
+        see(rest.made().map(drop).map_err(|e| e.placed(document)));
+    }
     let closures = scene.timeline.closures;
     if closures > MOST_CLOSURES {
         let remedy = format!("at most {MOST_CLOSURES} closures of each sample are looked at");
@@ -201,6 +205,13 @@ pub(super) fn untied(scene: &ElasticScene, document: &Document<'_>) -> Option<La
     cases.err().map(|e| e.placed(document))
 }
 
+/// Why the natural shape of a file cannot be; where something is tied [`untied`] says so.
+pub(super) fn unrested(scene: &ElasticScene, document: &Document<'_>) -> Option<LabError> {
+    let rest = scene.rest.as_ref().filter(|rest| rest.has_files());
+    let made = rest.filter(|_| scene.tie.is_none())?.made();
+    made.err().map(|e| e.placed(document))
+}
+
 /// What the rod refuses, with the key of the scene.
 fn refused(document: &Document<'_>, error: RodError) -> LabError {
     match error {
@@ -251,6 +262,16 @@ pub(super) fn idle(scene: &ElasticScene) -> Vec<(&'static str, &'static str)> {
         !scene.twists.is_empty(),
         "rod.poisson_ratio",
         "it changes nothing: no twist is modelled; give `twist`, or leave it out",
+    );
+    unless(
+        !scene.twists.is_empty(),
+        TWIST,
+        "it changes nothing: no twist is modelled; give `twist`, or leave it out",
+    );
+    unless(
+        !scene.rest.as_ref().is_some_and(RestKeys::is_empty),
+        "rod.rest",
+        "it says nothing: give `curvature` or `twist`, or leave the table out",
     );
     let key = "rod.seed";
     unless(

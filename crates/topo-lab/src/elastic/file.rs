@@ -37,6 +37,7 @@ use super::check;
 use super::choices::{Cuts, Names, by_preset};
 use super::defaults::{self, poisson_ratio_of};
 use super::keys::{EDGES, ROD_KEYS};
+use super::rest::{RestKeys, RestTable};
 use super::scene::{ElasticScene, OwnKnots};
 use super::tie::Word;
 use tied::TiedKeys;
@@ -92,6 +93,8 @@ struct RodTable {
     contact: Option<ContactParameters>,
     /// Friction between strands; without the table none is modelled.
     friction: Option<FrictionParameters>,
+    /// Natural shape of the fibre; without the table it is straight and untwisted at rest.
+    rest: Option<RestTable>,
     /// Largest random displacement of the start curve.
     #[serde(default = "defaults::imperfection")]
     #[schemars(range(min = 0, max = 0.5), extend("x-unit" = "h"), example = 0.01)]
@@ -210,6 +213,7 @@ impl File {
                 friction: rod.friction,
                 ..RodParameters::default()
             },
+            rest: None,
             imperfection: rod.imperfection,
             seed: rod.seed,
         }
@@ -237,12 +241,17 @@ impl File {
         let (accuracy, discharge) = (standard.accuracy, standard.discharge);
         let run = self.discharge;
         let beside = path.parent().unwrap_or(Path::new("")).to_owned();
+        let rest = self
+            .rod
+            .rest
+            .map(|table| RestKeys::new(table, beside.clone()));
         Ok(ElasticScene {
             folder: folder_of(path)?,
             knots,
             tie,
             twists,
             rod,
+            rest,
             imperfection,
             seed,
             charge: ChargeSettings {
@@ -316,6 +325,7 @@ impl ElasticScene {
                 faults.extend(check::unknown_knots(&scene, document));
                 if faults.is_empty() {
                     faults.extend(check::untied(&scene, document));
+                    faults.extend(check::unrested(&scene, document));
                 }
                 faults
             }
@@ -346,6 +356,7 @@ impl ElasticScene {
                 stretch_ratio: rod.stretch_ratio,
                 contact: rod.contact,
                 friction: rod.friction,
+                rest: self.rest.as_ref().map(RestKeys::table),
                 imperfection: self.imperfection,
                 seed: self.seed,
             },

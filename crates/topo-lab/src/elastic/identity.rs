@@ -54,8 +54,10 @@ pub(super) fn settings_of(scene: &ElasticScene, case: &ElasticCase) -> serde_jso
     all
 }
 
-/// Whether a twisted rod may start from the tight curve or from its mirror image, being the same knot.
+/// Whether a rod that is twisted, or not its own mirror image at rest, may start from the tight curve or from its mirror image, being
+/// the same knot.
 pub(super) fn starts_from_two_images(case: &ElasticCase, entry: &Entry) -> bool {
     let is_twisted = case.rod.twist.is_some_and(|twist| twist != 0.0);
-    is_twisted && entry.is_amphichiral_knot() && case.is_tightened()
+    let has_hand = is_twisted || case.rest.as_ref().is_some_and(|rest| rest.is_chiral());
+    has_hand && entry.is_amphichiral_knot() && case.is_tightened()
 }

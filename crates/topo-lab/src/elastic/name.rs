@@ -6,6 +6,7 @@ use topo_rod::{FrictionRange, RodParameters};
 use super::case::ElasticCase;
 use super::identity::settings_of;
 use super::own_term::OwnTerm;
+use super::rest::RestKeys;
 use super::scene::{ElasticScene, OwnKnots};
 use super::tie::Tie;
 use crate::preset::Preset;
@@ -45,6 +46,8 @@ impl ElasticScene {
             ..usual.rod.clone()
         };
         let name = name.changes(&value(rod), &value(&said), &[]);
+        let rest = case.rest.as_ref().map_or(json!({}), |rest| rest.said());
+        let name = name.changes(&json!({ "rest": rest }), &json!({ "rest": {} }), &[]);
         let labels = self.own_terms.iter().map(OwnTerm::label);
         labels
             .fold(name, |name, label| name.word(label))
@@ -94,6 +97,7 @@ impl ElasticScene {
             goal: None,
             own_knots: own_knots.as_deref().map(OwnKnots::at),
             tie: self.tie.as_ref().map(Tie::found_from_anywhere),
+            rest: self.rest.as_ref().map(RestKeys::found_from_anywhere),
             ..self.clone()
         };
         let labels = self.own_terms.iter().map(OwnTerm::label);

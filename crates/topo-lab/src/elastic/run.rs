@@ -35,7 +35,9 @@ pub(crate) struct ChargedCase {
 /// The tight curve of an amphichiral knot need not be its own mirror image, as that of 6_3, and a rod so tightly tied stays
 /// in the one of the two minima that it starts from. The image that stores less under the twist of the case is taken, so
 /// that the energy of such a knot does not depend on the sign of the twist. The other image stores what the one kept would
-/// under the opposite twist: how far a single curve sees the sign is the difference of the two energies.
+/// under the opposite twist: how far a single curve sees the sign is the difference of the two energies. A natural shape is that of the
+/// fibre, whichever image it is tied along: one with a hand is charged from both images without twist too, and the energy of the other
+/// is that of the mirrored shape.
 ///
 /// The mirror image of a knot starts from the mirror image of its start curve, imperfections included, so that at the opposite
 /// twist all of its run is the mirror image of the knot's.
@@ -60,6 +62,9 @@ pub(crate) fn charge(
     let centrelines = start.centrelines()?;
     let battery = RodBattery::link(&case.rod, &scene.accuracy, Guards::default(), &centrelines);
     let mut battery = battery.map_err(refuse)?;
+    if let Some(rest) = &case.rest {
+        battery = rest.of(battery).map_err(refuse)?;
+    }
     for term in &scene.own_terms {
         battery = term.added_to(battery).map_err(refuse)?;
     }

@@ -15,6 +15,7 @@ use super::defaults;
 use super::keys::{EDGES, ROD_KEYS};
 use super::observable::Observable;
 use super::own_term::OwnTerm;
+use super::rest::RestKeys;
 use super::tie::Tie;
 use super::tied::Tied;
 use crate::LabError;
@@ -37,6 +38,9 @@ pub struct ElasticScene {
     pub twists: Vec<f64>,
     /// Material, reading and resolution, its twist not yet set.
     pub rod: RodParameters,
+    /// Natural shape of the fibres, if it is not straight and untwisted.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rest: Option<RestKeys>,
     /// Size of the random perturbation of the start curve, in h: symmetric states that are unstable are left by it.
     pub imperfection: f64,
     /// Seed of that perturbation and of the closures.
@@ -106,6 +110,9 @@ impl ElasticCase {
         if let Some(tied) = &self.tied {
             name = format!("{name} {}", tied.word);
         }
+        if let Some(rest) = &self.rest {
+            name.push_str(&format!(" rest={}", rest.said()));
+        }
         let published = ElasticScene::published(Preset::default()).case(&self.knot, None);
         for key in ROD_KEYS.iter().filter(|key| key.key != EDGES) {
             match key.read(self) {
@@ -136,6 +143,7 @@ impl ElasticScene {
                 n_edges: preset.edges(),
                 ..RodParameters::default()
             },
+            rest: None,
             imperfection: defaults::imperfection(),
             seed: defaults::seed(),
             charge: ChargeSettings::default(),
@@ -167,7 +175,7 @@ impl ElasticScene {
     ///
     /// # Errors
     /// An unknown knot, or one that is there twice, be it by an alias or besides \"all\"; curves that cannot be read or leave no room
-    /// for the fibre.
+    /// for the fibre; a natural shape that cannot be read.
     pub fn cases(&self, table: &KnotTable) -> Result<Vec<ElasticCase>, LabError> {
         let mut names: Vec<String> = Vec::new();
         let mut seen = HashSet::new();
@@ -190,9 +198,11 @@ impl ElasticScene {
         } else {
             self.twists.iter().copied().map(Some).collect()
         };
+        let rest = self.rest.as_ref().map(RestKeys::made).transpose()?;
         let of = |knot: &str, tied: Option<&Arc<Tied>>| -> Vec<ElasticCase> {
             let case = |t: &Option<f64>| ElasticCase {
                 tied: tied.cloned(),
+                rest: rest.cloned(),
                 ..self.case(knot, *t)
             };
             let twisted = twists.iter().map(case);
@@ -228,6 +238,7 @@ impl ElasticScene {
                 twist,
                 ..self.rod.clone()
             },
+            rest: None,
             imperfection: self.imperfection,
             seed: self.seed,
         }
