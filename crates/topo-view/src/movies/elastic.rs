@@ -164,7 +164,7 @@ impl Actor {
                 reason: format!("{} is no curve", self.label),
             })?;
         let middle = [(x0 + x1) / 2.0, (y0 + y1) / 2.0];
-        canvas.tube(corner, [480.0, 244.0], middle, unit, &tube)?;
+        canvas.tubes(corner, [480.0, 244.0], middle, unit, &[tube])?;
         let style = Style::default().bold().halo().size(16.0);
         canvas.text(corner[0] + 16.0, corner[1] + 18.0, &self.label, style);
         let style = Style::default().halo().size(13.0);
