@@ -77,6 +77,7 @@ const DRAWING: [(&str, f64); 9] = [
     ("elastic-configurations", 22.0),
     ("elastic-charging", 3.0),
     ("elastic-discharge", 4.2),
+    ("elastic-breaking", 1.0),
     ("nematic-charging", 5.0),
     ("nematic-discharge", 1.0),
     ("knots-table", 5.6),
