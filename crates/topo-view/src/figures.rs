@@ -26,7 +26,7 @@ use std::path::Path;
 use std::time::Instant;
 
 /// Every figure, in the order of the gallery.
-pub const ALL: [Figure; 7] = [
+pub const ALL: [Figure; 8] = [
     elastic_configurations::FIGURE,
     elastic_charging::FIGURE,
     elastic_discharge::FIGURE,

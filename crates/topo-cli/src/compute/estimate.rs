@@ -73,7 +73,7 @@ fn of_drawing(order: &Order) -> [Stage; 2] {
 }
 
 /// Processor seconds of figures and movies at draft quality on the models' machine.
-const DRAWING: [(&str, f64); 9] = [
+const DRAWING: [(&str, f64); 10] = [
     ("elastic-configurations", 22.0),
     ("elastic-charging", 3.0),
     ("elastic-discharge", 4.2),
