@@ -81,7 +81,7 @@ const DRAWING: [(&str, f64); 10] = [
     ("nematic-charging", 5.0),
     ("nematic-discharge", 1.0),
     ("knots-table", 5.6),
-    ("links-table", 5.0),
+    ("links-table", 4.6),
     ("movie-elastic", 51.0),
     ("movie-nematic", 82.0),
 ];

@@ -129,7 +129,7 @@ fn numbers(rows: &[LinkRow]) -> Numbers<'static> {
             r.linking_numbers.replace('-', "−").replace(' ', ", "),
             r.struts.to_string(),
             r.kinks.to_string(),
-            text::fixed(r.residual, 3),
+            text::fixed(r.residual, 4),
         ]
     };
     let heading = format!("Residual, 0 to {}", text::significant(worst, 2));

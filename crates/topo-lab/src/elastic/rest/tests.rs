@@ -53,6 +53,41 @@ fn a_profile_is_linear_between_its_rows() {
     }
 }
 
+/// Of two rings, one twice as long as the other, each has the whole profile.
+#[test]
+fn a_profile_runs_once_around_each_component() {
+    let ring = |n: usize, radius: f64| {
+        let angle = |i: usize| i as f64 / n as f64 * std::f64::consts::TAU;
+        let point = |i: usize| {
+            let (sin, cos) = angle(i).sin_cos();
+            topo_core::Vector3::new(radius * cos, radius * sin, 3.0 * radius)
+        };
+        topo_core::Polyline::new((0..n).map(point).collect(), true).unwrap()
+    };
+    let rod = topo_rod::RodParameters {
+        n_edges: 60,
+        ..Default::default()
+    };
+    let rings = [ring(20, 4.0), ring(40, 8.0)];
+    let (accuracy, guards) = (Default::default(), Default::default());
+    let battery = RodBattery::link(&rod, &accuracy, guards, &rings).unwrap();
+    let profile = RestProfile::parse(PROFILE, CURVATURES).unwrap();
+    let rest = Rest {
+        curvature: Some(Along::Profile(profile.clone())),
+        twist: Some(Along::Same([0.3])),
+    };
+    let battery = rest.of(battery).unwrap();
+    let found = battery.start().rest().unwrap();
+    let places = (0..20).map(|i| i as f64 / 20.0);
+    let places = places.chain((0..40).map(|i| i as f64 / 40.0));
+    for (i, s) in places.enumerate() {
+        let (a, b) = (found.curvature[i], profile.at(s));
+        let miss = (a[0] - b[0]).abs() + (a[1] - b[1]).abs();
+        assert!(miss < 1e-12, "{i}: {a:?} {b:?}");
+        assert_eq!(found.twist[i], 0.3);
+    }
+}
+
 #[test]
 fn profiles_say_what_is_wrong_with_them() {
     for (text, words) in [
