@@ -1,5 +1,6 @@
 //! Charging: the twisted rod relaxes with its ends fused.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use topo_core::{Phase, Schedule, StopReason, positive};
 
@@ -11,11 +12,12 @@ use super::record::{PhaseReport, Recorder, RunRecord, Scales};
 use crate::{Breaking, Broken, RodEnds, RodError, RodState};
 
 /// How long a rod is charged and how often it is sampled.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct ChargeSettings {
     /// Duration of the relaxation, in T_0: long enough to reach the buckled plateau, short enough that instabilities of that
     /// plateau which grow from rounding errors alone (rates of about 2 per T_0 at high twist) do not decide the state.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub duration: f64,
     /// First output time after the start, in T_0.
     pub first_output: f64,
