@@ -61,19 +61,19 @@ pub fn results(folder: &Path, n_knots: usize, twists: &[f64]) {
     .unwrap();
 }
 
-/// Untwisted knots cut by each criterion: two by two they agree where the knot has near ties, else all of them.
+/// Untwisted knots cut by each criterion: where a knot has near ties two by two agree, and a third cut is a tie; else all agree.
 fn by_criterion(rows: &[Cut]) -> Vec<Cut> {
     let untwisted = rows.iter().filter(|r| r.twist == 0.0).cloned();
-    let named = untwisted.filter_map(|mut row| {
+    let named = untwisted.map(|mut row| {
         let n_cuts = rows.iter().filter(|r| r.case == row.case).count();
         let by = match (n_cuts > 1, row.cut < 0.2, row.cut < 0.5) {
             (false, ..) => "energy;curvature;tension;von-mises",
             (true, true, _) => "energy;von-mises",
             (true, false, true) => "curvature;tension",
-            _ => return None,
+            _ => "energy",
         };
         row.cut_by = by.to_owned();
-        Some(row)
+        row
     });
     named.collect()
 }

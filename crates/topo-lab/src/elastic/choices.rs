@@ -29,7 +29,8 @@ pub enum Cuts {
     Largest(Criterion),
     /// Every local maximum of that measure within 3 % of the largest.
     NearTies(Criterion),
-    /// The largest of each criterion, sites on which several agree once.
+    /// The near ties of the energy density, the largest first, and the largest of each other criterion, sites on which several agree
+    /// once.
     Criteria,
     /// K evenly spaced sites.
     All(usize),
@@ -204,7 +205,7 @@ impl JsonSchema for Cuts {
             { "const": "tension", "description": "Of the tension on the outer side of the bend, axial and of bending." },
             { "const": "von-mises", "description": "Of the von Mises stress there, of tension and twist." },
             { "type": "string", "pattern": "^near-ties:(energy|curvature|tension|von-mises)$", "x-form": "\"near-ties:tension\" and the like for the near ties of another criterion" },
-            { "const": CRITERIA, "description": "The maxima of all four, each site once." },
+            { "const": CRITERIA, "description": "The near ties of the energy density and the maxima of the three others, each site once." },
             { "type": "string", "pattern": "^all:[0-9]+$", "x-form": "\"all:K\" for K evenly spaced cuts" },
             place(),
             { "type": "array", "items": place(), "minItems": 1, "maxItems": MOST_CUTS },

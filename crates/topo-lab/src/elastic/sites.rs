@@ -58,8 +58,11 @@ pub(super) fn sites(inputs: &CaseInputs<'_>, charged: &ChargedRod) -> Vec<Chosen
         Cuts::Largest(criterion) => within(*criterion, 0.0).into_iter().take(1).collect(),
         Cuts::NearTies(criterion) => within(*criterion, NEAR_TIE),
         Cuts::Criteria => {
-            let each = Criterion::ALL.map(|c| within(c, 0.0).into_iter().next());
-            agreeing(each.into_iter().flatten())
+            let others = Criterion::ALL.into_iter();
+            let others = others.filter(|c| *c != Criterion::Energy);
+            let largest = others.filter_map(|c| within(c, 0.0).into_iter().next());
+            let ties = within(Criterion::Energy, NEAR_TIE).into_iter();
+            agreeing(ties.chain(largest))
         }
         Cuts::All(k) => (0..*k)
             .map(|i| Chosen::given(&(i as f64 / *k as f64)))

@@ -135,7 +135,7 @@ impl ElasticScene {
         }
     }
 
-    /// Untwisted knots cut at the largest of each criterion, and followed no further than their t99.
+    /// Untwisted knots cut at the near ties of the energy density and at the largest of each other criterion, and followed no further than their t99.
     fn breaking(&self) -> Variant {
         let mut scene = self.untwisted("elastic-breaking");
         scene.cuts = Cuts::Criteria;

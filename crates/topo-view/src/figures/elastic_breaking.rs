@@ -2,7 +2,7 @@
 
 use super::figure::{Context, Drawn, Figure, face};
 use super::series::{KEY_HEIGHT, Table, bounds, line, log_bounds, step};
-use crate::data::Sweep;
+use crate::data::{Cut, Sweep};
 use crate::error::ViewError;
 use crate::plot::canvas::Canvas;
 use crate::plot::color::{BLUE, GREEN, INK, VERMILION};
@@ -21,7 +21,7 @@ pub(super) const FIGURE: Figure = Figure {
               its elastic energy density, its curvature κ, the tension σ = γ(|x′| − 1) + hκ in E_b on \
               the outer side of its bend, and the von Mises stress of that tension and the shear of its \
               twist, (σ² + 3τ²)^½ with τ = (α/2)hθ′. Grey bars span the cuts at energy densities \
-              within 3 % of the largest, where these were run. (a) t99, the time in which 99 % of the \
+              within 3 % of the largest. (a) t99, the time in which 99 % of the \
               energy before the cut is released. (b) The same over the median of the knots; above the \
               dashed line a knot is called slow.",
     claim: "Knots are cut at the point of maximum stress; 3₁ and 7₄ are then slow without twist.",
@@ -80,7 +80,7 @@ struct Times<'a> {
 }
 
 impl<'a> Times<'a> {
-    fn of(sweep: &'a Sweep, criteria: &'a [ByCriterion]) -> Self {
+    fn of(criteria: &'a [ByCriterion]) -> Self {
         let knots: Vec<&str> = match criteria.first() {
             Some(first) => first.sweep.knots(),
             None => Vec::new(),
@@ -89,8 +89,13 @@ impl<'a> Times<'a> {
             let time = |knot: &&str| c.sweep.at(knot, 0.0)?.first().t99;
             (c.criterion, knots.iter().map(time).collect())
         };
+        // the largest energy density and its near ties are the cuts of one criterion
+        let energy = criteria.iter().find(|c| c.criterion == Criterion::Energy);
         let tied = |knot: &&str| {
-            let case = sweep.at(knot, 0.0).filter(|case| case.cuts.len() > 1)?;
+            let case = energy?.sweep.at(knot, 0.0)?;
+            if case.cuts.len() < 2 {
+                return None;
+            }
             let [_, low, high] = case.spread(|cut| cut.t99)?;
             Some([low, high])
         };
@@ -142,7 +147,7 @@ fn draw(context: &Context) -> Result<Drawn, ViewError> {
     let sweep = Sweep::read(context.results)?;
     let cut = Sweep::of_folder(&context.results.join("elastic-breaking"))?;
     let criteria = ByCriterion::of(&cut);
-    let times = Times::of(&sweep, &criteria);
+    let times = Times::of(&criteria);
     let relative = times.relative();
     let mut table = Table::new("panel,knot,criterion,x,y,low,high");
     let mut canvas = Canvas::new(720.0, 458.0, 4.0 * context.detail);
@@ -151,7 +156,13 @@ fn draw(context: &Context) -> Result<Drawn, ViewError> {
     canvas.letter(8.0, 18.0, "a");
     let a = panel(&times, 12.0, absolute.with_room(KEY_HEIGHT, HEIGHT));
     let key = legend(&a, &times, &mut canvas);
-    columns(&a, &times, "a", key, (&mut canvas, &mut table));
+    columns(
+        &a,
+        &times,
+        "a",
+        (key, KEY_HEIGHT),
+        (&mut canvas, &mut table),
+    );
     canvas.letter(8.0, 224.0, "b");
     let top = bounds(relative.all()).1.max(1.2 * SLOW);
     let axis = Axis::linear(
@@ -167,7 +178,7 @@ fn draw(context: &Context) -> Result<Drawn, ViewError> {
         line(at.to_vec(), "#7a828c", 0.9)
     };
     let slow = (0..60).map(dash).collect();
-    columns(&b, &relative, "b", slow, (&mut canvas, &mut table));
+    columns(&b, &relative, "b", (slow, 0.0), (&mut canvas, &mut table));
     names(&b, &relative, &mut canvas);
     canvas.footnote(&feet(&sweep, &cut, context));
     Ok(Drawn {
@@ -207,17 +218,19 @@ fn columns(
     panel: &Panel,
     times: &Times<'_>,
     letter: &str,
-    more: Vec<Plot>,
+    (more, room): (Vec<Plot>, f64),
     (canvas, table): (&mut Canvas, &mut Table),
 ) {
-    let (low, high) = panel.y.range;
+    let low = panel.y.range.0;
+    // below what is written into the panel
+    let high = panel.y.value(1.0 - room / panel.size[1]);
     let rules = 1..times.knots.len();
     let rule = |k: usize| line(vec![(k as f64, low), (k as f64, high)], "#e6e8eb", 0.6);
     let mut plots: Vec<Plot> = rules.map(rule).collect();
     for (k, (knot, tied)) in times.knots.iter().zip(&times.ties).enumerate() {
         if let Some([low, high]) = *tied {
             let x = k as f64 + 0.5;
-            plots.push(line(vec![(x, low), (x, high)], TIES, 9.0));
+            plots.push(line(vec![(x, low), (x, high)], TIES, 36.0));
             table.row(&[letter, knot, "near-ties"], &[x, f64::NAN, low, high]);
         }
     }
@@ -282,7 +295,9 @@ fn finding(times: &Times<'_>, criteria: &[ByCriterion], cut: &Sweep) -> String {
         let (low, high) = bounds(of(k));
         high / low
     };
-    let agreeing = cut.cases.iter().filter(|case| case.cuts.len() == 1).count();
+    let agree = |cut: &Cut| cut.cut_by.split(';').count() == LOOKS.len();
+    let agreeing = cut.cases.iter().filter(|case| case.cuts.iter().any(agree));
+    let agreeing = agreeing.count();
     let widest = (0..times.knots.len()).max_by(|a, b| spread(*a).total_cmp(&spread(*b)));
     let widest = widest.map_or_else(String::new, |k| {
         format!(
@@ -309,8 +324,10 @@ fn finding(times: &Times<'_>, criteria: &[ByCriterion], cut: &Sweep) -> String {
         };
         format!("{}: {list}", words(c.criterion))
     });
+    let ties = times.ties.iter().flatten().map(|[low, high]| high / low);
+    let ties = text::number(ties.fold(1.0, f64::max), 2);
     format!(
-        "All criteria cut at one vertex in {agreeing} of {} untwisted knots{widest}. Slower than {SLOW} times the median, cut at the largest {}.",
+        "All criteria cut at one vertex in {agreeing} of {} untwisted knots{widest}, on which of the near-tied energy densities by {ties}. Slower than {SLOW} times the median, cut at the largest {}.",
         cut.cases.len(),
         slow.collect::<Vec<_>>().join("; ")
     )
