@@ -21,11 +21,8 @@ const TIED: [&str; 8] = [
     "knot = \"3_1#m3_1\"",
     "knot = \"8_18\"",
     "knot = \"10_124\"",
-    "curve = \"random.xyz\"",
+    "curve = \"random.xyz\"\nreading = \"own-length\"",
 ];
-
-/// Cuts of each charged state.
-const N_CUTS: usize = 5;
 
 /// A closed curve of random long waves, thick enough for a fibre: length over thickness below 150.
 fn random_curve(random: &mut Pcg64) -> Polyline {
@@ -46,14 +43,23 @@ fn random_curve(random: &mut Pcg64) -> Polyline {
 }
 
 /// Ties, charges, cuts and discharges one state; twist, friction, seed and cuts are random.
-fn sweep(tied: &str, name: &str, random: &mut Pcg64, folder: &Path) -> ElasticReport {
+fn sweep(
+    tied: &str,
+    name: &str,
+    n_cuts: usize,
+    random: &mut Pcg64,
+    folder: &Path,
+) -> ElasticReport {
     if tied.starts_with("curve") {
         write_curve(&folder.join("random.xyz"), &random_curve(random)).unwrap();
     }
     let twist: f64 = random.random_range(-2.0..2.0);
     let friction: f64 = random.random_range(0.0..1.0);
     let seed: u16 = random.random();
-    let cuts: Vec<f64> = (0..N_CUTS).map(|_| random.random_range(0.0..1.0)).collect();
+    // one in each of equal parts, so that no two fall on one vertex
+    let cuts: Vec<f64> = (0..n_cuts)
+        .map(|k| (k as f64 + random.random_range(0.0..0.9)) / n_cuts as f64)
+        .collect();
     let mut text = format!("[rod]\n{tied}\ntwist = {twist}\nseed = {seed}\n[rod.contact]\n");
     write!(
         text,
@@ -107,7 +113,7 @@ fn check(report: &ElasticReport, run: &Value, charged: &Path) -> f64 {
     assert!(drift < 1e-10, "{case}: {drift:.1e}");
     let of = |report: &Value| report["ledger_residual"].as_f64().unwrap();
     let cuts = run["cuts"].as_array().unwrap();
-    assert_eq!(cuts.len(), N_CUTS, "{case}");
+    assert_eq!(cuts.len(), report.rows.len(), "{case}");
     for cut in cuts {
         let stop = &cut["report"]["stop"];
         let is_over = stop == "reached-time" || stop["condition"] == "released";
@@ -121,34 +127,35 @@ fn check(report: &ElasticReport, run: &Value, charged: &Path) -> f64 {
     residual
 }
 
-/// `n_states` random charges of everything that can be tied, each with [`N_CUTS`] discharges.
-fn tangle(tied: &[&str], n_states: usize) {
+/// `n_states` random charges of everything that can be tied, each with `n_cuts` discharges.
+fn tangle(tied: &[&str], n_states: usize, n_cuts: usize) {
     let folder = tempfile::tempdir().unwrap();
     let mut random = Pcg64::seed_from_u64(20);
     for (k, tied) in tied.iter().enumerate() {
         let mut worst = 0.0_f64;
         for state in 0..n_states {
             let name = format!("tied-{k}-{state}");
-            let report = sweep(tied, &name, &mut random, folder.path());
+            let report = sweep(tied, &name, n_cuts, &mut random, folder.path());
             assert!(report.failed.is_empty(), "{tied}: {:?}", report.failed);
+            assert_eq!(report.rows.len(), n_cuts, "{tied}");
             let case = folder.path().join(&name).join(&report.rows[0].case);
             let run = std::fs::read_to_string(case.join("run.json")).unwrap();
             let run: Value = serde_json::from_str(&run).unwrap();
             worst = worst.max(check(&report, &run, &case.join("charged.csv")));
         }
-        let n = n_states * N_CUTS;
+        let n = n_states * n_cuts;
         println!("{tied}: {n} runs, energy accounts open by {worst:.1e} at most");
     }
 }
 
 #[test]
 fn law_random_tangles_keep_what_they_must() {
-    tangle(&TIED[..1], 1);
-    tangle(&TIED[7..], 2);
+    tangle(&TIED[..1], 1, 2);
+    tangle(&TIED[7..], 1, 1);
 }
 
 #[test]
 #[ignore = "long: 1000 runs, 10 minutes"]
 fn long_a_thousand_random_tangles_keep_what_they_must() {
-    tangle(&TIED, 25);
+    tangle(&TIED, 25, 5);
 }
