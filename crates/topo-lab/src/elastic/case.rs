@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use serde::Serialize;
-use topo_rod::RodParameters;
+use topo_rod::{EndLoad, RodParameters};
 
 use super::tied::{self, Tied};
 
@@ -20,6 +20,9 @@ pub struct ElasticCase {
     pub tied: Option<Arc<Tied>>,
     /// Material, twist, reading and resolution.
     pub rod: RodParameters,
+    /// What takes up the work of the discharge, if anything.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub load: Option<EndLoad>,
     /// Size of the random perturbation of the start curve, in h.
     #[serde(skip)]
     pub imperfection: f64,

@@ -28,8 +28,8 @@ use std::sync::OnceLock;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use topo_rod::{
-    Accuracy, ChargeSettings, ContactParameters, DischargeSettings, Ends, FrictionParameters,
-    IntegratorKind, Reading, RodParameters,
+    Accuracy, ChargeSettings, ContactParameters, DischargeSettings, EndLoad, Ends,
+    FrictionParameters, Grip, IntegratorKind, PullSettings, Reading, RodParameters, Twisting,
 };
 
 use super::case::ElasticCase;
@@ -120,6 +120,8 @@ struct DischargeTable {
     closures: Option<usize>,
     /// What holds, moves or loads the ends of the open fibre.
     ends: Ends,
+    /// What takes up the work of the open fibre; without the table nothing does.
+    load: Option<EndLoad>,
 }
 
 /// How accurately a fibre is followed.
@@ -156,6 +158,24 @@ struct ChargeTable {
     /// Duration of the relaxation.
     #[schemars(extend("x-unit" = "T_0", "default" = ChargeSettings::default().duration, "exclusiveMinimum" = 0), example = 1.0)]
     duration: Option<f64>,
+    /// Twisting in time between two relaxations; without the table the twist is tied in at once.
+    twisting: Option<Twisting>,
+}
+
+/// The pulling of an open fibre.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+struct PullTable {
+    /// How its first and last end are held, moved and loaded in time.
+    #[schemars(extend("examples" = [[{ "condition": "clamped" }, { "condition": "clamped", "displacement": [{ "to": 20.0, "over": 50.0 }, 0.0, 0.0] }]]))]
+    grips: [Grip; 2],
+    /// Duration.
+    #[schemars(extend("x-unit" = "T_0", "exclusiveMinimum" = 0), example = 60.0)]
+    duration: f64,
+    /// Output times, evenly spaced.
+    #[serde(default = "defaults::outputs")]
+    #[schemars(range(min = 1, max = 100_000), extend("x-unit" = "1"), example = 50)]
+    outputs: usize,
 }
 
 /// A scene of knotted fibres.
@@ -165,6 +185,8 @@ struct File {
     rod: RodTable,
     #[serde(default)]
     charge: ChargeTable,
+    /// Pulling of a fibre that is open, instead of charge and cut; without the table its ends are fused.
+    pull: Option<PullTable>,
     #[serde(default)]
     discharge: DischargeTable,
     /// Largest relative error of t99, instead of the table [accuracy].
@@ -210,6 +232,7 @@ impl File {
                 friction: rod.friction,
                 ..RodParameters::default()
             },
+            load: self.discharge.load,
             imperfection: rod.imperfection,
             seed: rod.seed,
         }
@@ -223,12 +246,13 @@ impl File {
     ) -> Result<ElasticScene, LabError> {
         let ElasticCase {
             rod,
+            load,
             imperfection,
             seed,
             ..
         } = self.case();
         let path = document.path();
-        let (knots, tie) = self.rod.tie(document)?;
+        let (knots, tie) = self.rod.tie(document, self.pull.is_some())?;
         let (asked, goal) = self
             .accuracy
             .with_budget(self.budget.as_deref())
@@ -247,8 +271,14 @@ impl File {
             seed,
             charge: ChargeSettings {
                 duration: self.charge.duration.unwrap_or(standard.charge.duration),
+                twisting: self.charge.twisting,
                 ..standard.charge
             },
+            pull: self.pull.map(|pull| PullSettings {
+                grips: pull.grips,
+                duration: pull.duration,
+                outputs: pull.outputs,
+            }),
             cuts: run.cuts.unwrap_or(standard.cuts),
             discharge: DischargeSettings {
                 until_released: run.until_released.unwrap_or(discharge.until_released),
@@ -256,6 +286,7 @@ impl File {
                 ends: run.ends,
                 ..discharge
             },
+            load,
             timeline: TimelineSettings {
                 closures: run.closures.unwrap_or(standard.timeline.closures),
                 ..standard.timeline
@@ -351,13 +382,20 @@ impl ElasticScene {
             },
             charge: ChargeTable {
                 duration: Some(self.charge.duration),
+                twisting: self.charge.twisting,
             },
+            pull: self.pull.clone().map(|pull| PullTable {
+                grips: pull.grips,
+                duration: pull.duration,
+                outputs: pull.outputs,
+            }),
             discharge: DischargeTable {
                 cuts: Some(self.cuts.clone()),
                 until_released: Some(self.discharge.until_released),
                 longest: Some(self.discharge.longest),
                 closures: Some(self.timeline.closures),
                 ends: self.discharge.ends,
+                load: self.load,
             },
             accuracy: GoalOr::Settings(AccuracyTable {
                 preset: self.preset,

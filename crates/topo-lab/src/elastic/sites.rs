@@ -8,6 +8,10 @@ use super::choices::{Cuts, NEAR_TIE};
 /// Where the scene cuts the rod, s/L along all components.
 pub(super) fn sites(inputs: &CaseInputs<'_>, charged: &ChargedRod) -> Vec<f64> {
     let CaseInputs { scene, case, .. } = *inputs;
+    if scene.pull.is_some() {
+        // its ends are there
+        return vec![0.0];
+    }
     match &scene.cuts {
         _ if scene.fixed_cuts.is_some() => {
             let fixed = scene.fixed_cuts.as_ref();
