@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use serde::{Serialize, Serializer};
-use topo_rod::RodParameters;
+use topo_rod::{EndLoad, RodParameters};
 
 use super::rest::Rest;
 use super::tied::{self, Tied};
@@ -24,6 +24,9 @@ pub struct ElasticCase {
     /// Natural shape, if it is not straight and untwisted.
     #[serde(skip_serializing_if = "Option::is_none", serialize_with = "of_case")]
     pub rest: Option<Arc<Rest>>,
+    /// What takes up the work of the discharge, if anything.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub load: Option<EndLoad>,
     /// Size of the random perturbation of the start curve, in h.
     #[serde(skip)]
     pub imperfection: f64,

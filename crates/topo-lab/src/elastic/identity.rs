@@ -21,6 +21,9 @@ pub(crate) fn fingerprint(scene: &ElasticScene, case: &ElasticCase, entry: &Entr
     if starts_from_two_images(scene, case, entry) {
         all["images"] = 2.into();
     }
+    if let Some(pull) = &scene.pull {
+        all["pull"] = json!(pull);
+    }
     if let Some(cuts) = &scene.fixed_cuts {
         all["fixed_cuts"] = json!(cuts.get(&case.state()));
     }
@@ -48,8 +51,13 @@ pub(super) fn settings_of(scene: &ElasticScene, case: &ElasticCase) -> serde_jso
         scene.accuracy,
         fixed
     ]);
-    if let (Some(all), false) = (all.as_array_mut(), scene.own_terms.is_empty()) {
-        all.push(json!(scene.own_terms));
+    if let Some(all) = all.as_array_mut() {
+        if !scene.own_terms.is_empty() {
+            all.push(json!(scene.own_terms));
+        }
+        if scene.pull.is_some() {
+            all.push(json!(scene.pull));
+        }
     }
     all
 }

@@ -1,7 +1,7 @@
 //! What tells the cases of elastic scenes apart: the names of their folders and the settings in their rows.
 
 use serde_json::json;
-use topo_rod::{FrictionRange, Reading, RodParameters};
+use topo_rod::{EndLoad, FrictionRange, Reading, RodParameters};
 
 use super::case::ElasticCase;
 use super::identity::settings_of;
@@ -48,6 +48,14 @@ impl ElasticScene {
         let name = name.changes(&value(rod), &value(&said), &[]);
         let rest = case.rest.as_ref().map_or(json!({}), |rest| rest.said());
         let name = name.changes(&json!({ "rest": rest }), &json!({ "rest": {} }), &[]);
+        let name = match case.load {
+            Some(load) => name.changes(
+                &json!({ "load": load }),
+                &json!({ "load": EndLoad::default() }),
+                &[],
+            ),
+            None => name,
+        };
         let labels = self.own_terms.iter().map(OwnTerm::label);
         labels
             .fold(name, |name, label| name.word(label))
@@ -82,6 +90,9 @@ impl ElasticScene {
                 FrictionRange::Contact => "contact".to_owned(),
                 FrictionRange::TimesContact(x) => x.to_string(),
             }),
+            load_spring: case.load.map(|l| l.spring),
+            load_rest_length: case.load.map(|l| l.rest_length),
+            load_dashpot: case.load.map(|l| l.dashpot),
             imperfection: case.imperfection,
             seed: case.seed,
             tolerance: self.accuracy.tolerance,
@@ -132,6 +143,9 @@ impl Row for SweepRow {
             contact_stiffness: blank.contact_stiffness,
             friction_ratio: blank.friction_ratio,
             friction_range: blank.friction_range,
+            load_spring: blank.load_spring,
+            load_rest_length: blank.load_rest_length,
+            load_dashpot: blank.load_dashpot,
             imperfection: blank.imperfection,
             seed: blank.seed,
             tolerance: blank.tolerance,

@@ -7,7 +7,10 @@ use std::sync::Arc;
 use serde::Serialize;
 use topo_knots::{KnotTable, TightenSettings};
 use topo_rod::energy::EnergyTerm;
-use topo_rod::{Accuracy, ChargeSettings, DischargeSettings, RodParameters, RodSample, RodState};
+use topo_rod::{
+    Accuracy, ChargeSettings, DischargeSettings, EndLoad, PullSettings, RodParameters, RodSample,
+    RodState,
+};
 
 use super::case::ElasticCase;
 use super::choices::Cuts;
@@ -48,10 +51,16 @@ pub struct ElasticScene {
     pub seed: u64,
     /// Relaxation of the closed rod.
     pub charge: ChargeSettings,
+    /// Pulling of an open fibre, instead of the charge of a closed one and its cuts.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pull: Option<PullSettings>,
     /// Sites cut.
     pub cuts: Cuts,
     /// Discharge of the open rod.
     pub discharge: DischargeSettings,
+    /// What takes up the work of the discharge of a case that has no other.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub load: Option<EndLoad>,
     /// Knot types while open.
     pub timeline: TimelineSettings,
     /// Integrator and tolerance.
@@ -155,8 +164,10 @@ impl ElasticScene {
             imperfection: defaults::imperfection(),
             seed: defaults::seed(),
             charge: ChargeSettings::default(),
+            pull: None,
             cuts: preset.cuts(),
             discharge: DischargeSettings::default(),
+            load: None,
             timeline: TimelineSettings::default(),
             accuracy: preset.accuracy(),
             axes: Vec::new(),
@@ -248,6 +259,7 @@ impl ElasticScene {
                 ..self.rod.clone()
             },
             rest: None,
+            load: self.load,
             imperfection: self.imperfection,
             seed: self.seed,
         }
