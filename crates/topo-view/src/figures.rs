@@ -1,6 +1,7 @@
 //! The figures: one file each; a new one is a file and a line in [`ALL`].
 
 mod beside;
+mod elastic_breaking;
 mod elastic_charging;
 mod elastic_configurations;
 mod elastic_discharge;
@@ -25,10 +26,11 @@ use std::path::Path;
 use std::time::Instant;
 
 /// Every figure, in the order of the gallery.
-pub const ALL: [Figure; 7] = [
+pub const ALL: [Figure; 8] = [
     elastic_configurations::FIGURE,
     elastic_charging::FIGURE,
     elastic_discharge::FIGURE,
+    elastic_breaking::FIGURE,
     nematic::charging::FIGURE,
     nematic::discharge::FIGURE,
     knots_table::FIGURE,

@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 use std::f64::consts::TAU;
 use std::fmt::Write;
 use std::path::Path;
-use topo_analysis::LinkRow;
+use topo_analysis::{LinkRow, table_bytes};
 use topo_core::Polyline;
 use topo_knots::write_curves;
 
@@ -48,6 +48,10 @@ pub fn results(folder: &Path, n_knots: usize, twists: &[f64]) {
     links(folder);
     let sweep = sweep.into_inner().unwrap();
     write(&folder.join("elastic/sweep.csv"), &sweep).unwrap();
+    let rows = csv::Reader::from_reader(sweep.as_slice()).into_deserialize();
+    let rows: Vec<Cut> = rows.collect::<Result<_, _>>().unwrap();
+    let breaking = table_bytes(Path::new("sweep.csv"), &by_criterion(&rows)).unwrap();
+    write(&folder.join("elastic-breaking/sweep.csv"), &breaking).unwrap();
     // another choice of friction, as if it changed nothing
     write(&folder.join("elastic-contact-range/sweep.csv"), &sweep).unwrap();
     write(
@@ -55,6 +59,23 @@ pub fn results(folder: &Path, n_knots: usize, twists: &[f64]) {
         &table.into_inner().unwrap(),
     )
     .unwrap();
+}
+
+/// Untwisted knots cut by each criterion: where a knot has near ties two by two agree, and a third cut is a tie; else all agree.
+fn by_criterion(rows: &[Cut]) -> Vec<Cut> {
+    let untwisted = rows.iter().filter(|r| r.twist == 0.0).cloned();
+    let named = untwisted.map(|mut row| {
+        let n_cuts = rows.iter().filter(|r| r.case == row.case).count();
+        let by = match (n_cuts > 1, row.cut < 0.2, row.cut < 0.5) {
+            (false, ..) => "energy;curvature;tension;von-mises",
+            (true, true, _) => "energy;von-mises",
+            (true, false, true) => "curvature;tension",
+            _ => "energy",
+        };
+        row.cut_by = by.to_owned();
+        row
+    });
+    named.collect()
 }
 
 fn closed(k: usize, twist: f64) -> Vec<Vector3<f64>> {

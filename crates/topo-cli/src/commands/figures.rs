@@ -37,7 +37,7 @@ pub fn run(args: &FiguresArgs, workspace: Option<&Path>) -> Result<(), CliError>
         fresh: args.work.fresh,
         shard: args.shard,
         as_is: args.as_is,
-        elastic: chosen.iter().any(|f| f.table.starts_with("elastic/")),
+        elastic: chosen.iter().any(|f| f.table.starts_with("elastic")),
         nematic: chosen.iter().any(|f| f.table.starts_with("nematic/")),
         knots: chosen.iter().any(|f| f.table == "knots/table.csv"),
         links: chosen.iter().any(|f| f.table == "knots/links.csv"),

@@ -2,6 +2,7 @@
 
 use std::collections::HashSet;
 
+use topo_core::InvalidValue;
 use topo_knots::KnotTable;
 use topo_rod::{IntegratorKind, Reading, RodError};
 
@@ -9,7 +10,7 @@ use super::case::ElasticCase;
 use super::cost::BYTES;
 use super::keys::{EDGES, ROD_KEYS};
 use super::rest::{RestKeys, TWIST};
-use super::scene::ElasticScene;
+use super::scene::{BREAKS, ElasticScene};
 use crate::LabError;
 use crate::scene::{AxisValue, Document, check_count, product};
 
@@ -56,6 +57,13 @@ pub(super) fn faults(
     let refuse = |e| refused(document, e);
     see(scene.accuracy.checked().map(drop).map_err(refuse));
     see(scene.charge.checked().map(drop).map_err(refuse));
+    if let Some(si) = scene.si {
+        let wrong = |e: InvalidValue| {
+            let key = format!("si.{}", e.name);
+            document.wrong(&key, e.value, format!("expected {}", e.expected))
+        };
+        see(si.checked().map(drop).map_err(wrong));
+    }
     let has_twist = !scene.twists.is_empty();
     see(scene.discharge.checked(has_twist).map(drop).map_err(refuse));
     if let Some(rest) = scene.rest.as_ref().filter(|rest| !rest.has_files()) {
@@ -252,6 +260,7 @@ pub(super) fn idle(scene: &ElasticScene) -> Vec<(&'static str, &'static str)> {
             idle.push((key, reason));
         }
     };
+    unless(scene.charge.breaking.is_none(), "discharge.cuts", BREAKS);
     let key = "rod.slenderness";
     unless(
         acts(key, &|c| c.rod.reading != Reading::OwnLength),

@@ -16,6 +16,7 @@ use super::keys::{EDGES, ROD_KEYS};
 use super::observable::Observable;
 use super::own_term::OwnTerm;
 use super::rest::RestKeys;
+use super::si::Si;
 use super::tie::Tie;
 use super::tied::Tied;
 use crate::LabError;
@@ -58,6 +59,9 @@ pub struct ElasticScene {
     /// Keys with several values: the cases are their product, the last axis running fastest.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub axes: Vec<Axis>,
+    /// What the fibre is in SI units; no number of a case depends on it.
+    #[serde(skip)]
+    pub si: Option<Si>,
     /// Folder of knots besides the built-in ones.
     #[serde(skip)]
     pub own_knots: Option<OwnKnots>,
@@ -102,6 +106,10 @@ impl OwnKnots {
         self.beside.join(&self.written)
     }
 }
+
+/// Why a fibre that breaks by itself has no cuts.
+pub(super) const BREAKS: &str =
+    "the fibre breaks by itself, as the table [charge.break] says: leave out one of the two";
 
 impl ElasticCase {
     /// The charged state, whatever the resolution: knot, twist, and what is not as published.
@@ -152,6 +160,7 @@ impl ElasticScene {
             timeline: TimelineSettings::default(),
             accuracy: preset.accuracy(),
             axes: Vec::new(),
+            si: None,
             own_knots: None,
             preset,
             tighten: preset.tighten(),
@@ -247,8 +256,11 @@ impl ElasticScene {
     /// The scene with other cuts.
     ///
     /// # Errors
-    /// Cuts that fall on one vertex of a rod, and what would be right.
+    /// Cuts that fall on one vertex of a rod, or cuts of a fibre that breaks by itself, and what would be right.
     pub fn with_cuts(mut self, cuts: Cuts) -> Result<Self, String> {
+        if self.charge.breaking.is_some() {
+            return Err(BREAKS.to_owned());
+        }
         for case in product(&ROD_KEYS, &self.axes, self.case("", None)) {
             cuts.clash(case.rod.n_edges).map_or(Ok(()), Err)?;
         }

@@ -1,5 +1,6 @@
 //! Discharging: the cut rod opens until its elastic energy is released.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use topo_core::{Phase, Schedule, StopReason, in_range, positive};
 
@@ -10,13 +11,15 @@ use super::record::{Recorder, RunRecord, Scales};
 use crate::{Ends, RodEnds, RodError};
 
 /// How far a discharge is followed and how often it is sampled.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct DischargeSettings {
     /// The run ends when this share of the elastic energy left by the cut is released. At least the same share of the energy
     /// before the cut is then released.
+    #[schemars(range(min = 1e-6, max = 0.999_999_999))]
     pub until_released: f64,
     /// Longest time followed, in T_0.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub longest: f64,
     /// First output time after the cut, in T_0.
     pub first_output: f64,
@@ -122,6 +125,7 @@ impl CutRod {
             until: settings.longest * scales.time,
             opened: Some(self.component),
             release: Some([after_cut, (1.0 - settings.until_released) * after_cut]),
+            breaking: None,
         };
         let of = (settings, before);
         let system = (model, state);

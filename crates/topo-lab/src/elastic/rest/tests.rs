@@ -251,6 +251,10 @@ fn shapes_with_a_hand_start_from_both_images() {
         let scene = ElasticScene::parse(&text, Path::new("scene.toml")).unwrap();
         let case = case_of(&scene);
         let entry = case.entry(&KnotTable::builtin()).unwrap().into_owned();
-        assert_eq!(starts_from_two_images(&case, &entry), chiral, "{rest}");
+        assert_eq!(
+            starts_from_two_images(&scene, &case, &entry),
+            chiral,
+            "{rest}"
+        );
     }
 }
