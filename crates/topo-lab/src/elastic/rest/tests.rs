@@ -1,4 +1,4 @@
-//! Natural shapes of scenes: what is read, refused, and told apart.
+//! Natural shapes of scenes: what is read, refused, and kept apart.
 
 use std::path::Path;
 

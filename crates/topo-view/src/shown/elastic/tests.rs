@@ -58,6 +58,9 @@ fn check_page(out: &Path) {
             .iter()
             .all(|shape| *shape == json!([true, false]))
     );
+    // a point is six bytes, which are eight letters: the rings are not one
+    let xyz = state["xyz"].as_str().unwrap();
+    assert_ne!(xyz[..8 * N], xyz[8 * N..16 * N]);
     let bytes = state["w"].as_str().unwrap().len() / 4 * 3;
     assert!(bytes.abs_diff(2 * N * closed.len()) < 3, "{bytes}");
 }
