@@ -26,6 +26,12 @@ impl Further {
         self.0.iter().map(|(name, energy)| (name.as_str(), *energy))
     }
 
+    /// The one of a name.
+    pub fn of(&self, name: &str) -> Option<f64> {
+        let mut all = self.iter();
+        all.find(|(known, _)| *known == name).map(|(_, x)| x)
+    }
+
     fn text(&self) -> String {
         let mut text = String::new();
         for (name, energy) in self.iter() {
@@ -50,6 +56,13 @@ impl<N: Into<String>> FromIterator<(N, f64)> for Further {
     fn from_iter<I: IntoIterator<Item = (N, f64)>>(all: I) -> Self {
         let named = |(name, energy): (N, f64)| (name.into(), energy);
         Self(all.into_iter().map(named).collect())
+    }
+}
+
+impl<N: Into<String>> Extend<(N, f64)> for Further {
+    fn extend<I: IntoIterator<Item = (N, f64)>>(&mut self, more: I) {
+        let named = |(name, x): (N, f64)| (name.into(), x);
+        self.0.extend(more.into_iter().map(named));
     }
 }
 

@@ -107,6 +107,21 @@ impl RodUnits {
         energy * (PI * self.bending_modulus * self.radius.powi(3))
     }
 
+    /// T_0 = 2 L η/(h E_b) of a rod of reduced `length` L, in seconds.
+    pub fn reference_seconds(&self, length: f64) -> f64 {
+        self.time_to_seconds(reference_time(length))
+    }
+
+    /// E_0 = E_b h² L of a rod of reduced `length` L, in joules.
+    pub fn reference_joules(&self, length: f64) -> f64 {
+        self.energy_to_joules(reference_energy(length))
+    }
+
+    /// Mass of a rod of reduced `length` L and `density` ρ (in kg/m³), in kilograms: ρ π h² L.
+    pub fn kilograms(&self, length: f64, density: f64) -> f64 {
+        density * (PI * self.radius * self.radius) * self.length_to_metres(length)
+    }
+
     /// `joules` as a reduced energy per cross section (in E_b h).
     pub fn joules_to_energy(&self, joules: f64) -> f64 {
         joules / self.energy_to_joules(1.0)
@@ -171,6 +186,11 @@ mod tests {
         // E0 = E_b h^2 L = 1e7 * 1e-6 * 0.05 J.
         let e0 = units.energy_to_joules(1.0) / energy_over_reference(1.0, 50.0);
         assert_relative_eq!(e0, 0.5, max_relative = 1e-14);
+        assert_relative_eq!(units.reference_seconds(50.0), 0.1, max_relative = 1e-14);
+        assert_relative_eq!(units.reference_joules(50.0), 0.5, max_relative = 1e-14);
+        // 1000 kg/m³ of a wire of 2 mm and 5 cm: 0.157 g
+        let mass = units.kilograms(50.0, 1000.0);
+        assert_relative_eq!(mass, 1.570_796_326_8e-4, max_relative = 1e-10);
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod battery;
+mod breaking;
 mod by_goal;
 mod case;
 mod case_run;
@@ -21,8 +22,10 @@ mod own_term;
 mod print;
 mod probe;
 mod record;
+mod rest;
 mod run;
 mod scene;
+mod si;
 mod sites;
 mod starts;
 mod sweep;
@@ -44,7 +47,9 @@ pub(crate) use keys::ROD_KEYS;
 pub use observable::Observable;
 pub use own_term::OwnTerm;
 pub(crate) use probe::ROD_PROBE;
+pub use rest::{Rest, RestKeys, RestProfile};
 pub use scene::{ElasticScene, OwnKnots};
+pub use si::Si;
 pub use sweep::{ElasticReport, Rods, estimate_sweep, run_sweep};
 pub use tie::Tie;
 pub use tied::Tied;

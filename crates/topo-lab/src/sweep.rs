@@ -132,6 +132,7 @@ pub(crate) fn run<E: Experiment>(
     let estimate = plan.estimate;
     let (rows, failed) = gather(experiment, plan, now);
     write_table(&folder.join("sweep.csv"), &rows)?;
+    experiment.write_beside(&folder, &rows)?;
     failed::write(&folder, &failed)?;
     Ok(SweepReport {
         rows,

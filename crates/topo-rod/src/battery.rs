@@ -18,8 +18,8 @@ use self::curves::total_length;
 use crate::contact::ContactPairs;
 use crate::energy::{At, EnergyTerm, TermFactory, terms_of};
 use crate::{
-    Accuracy, Geometry, Guards, RestShape, RodEnds, RodError, RodModel, RodParameters, RodState,
-    Tube,
+    Accuracy, Criterion, Geometry, Guards, RestShape, RodEnds, RodError, RodModel, RodParameters,
+    RodState, Tube,
 };
 
 /// A tied fibre, or several, ready to be twisted, fused and charged.
@@ -172,6 +172,15 @@ impl RodBattery {
     /// # Validation
     /// `val_density_of_a_bent_twisted_stretched_coil`, `law_density_sums_to_the_elastic_energy`
     pub fn energy_density(&self, state: &RodState) -> Vec<f64> {
+        self.measure(Criterion::Energy, state)
+    }
+
+    /// The measure of a criterion at each vertex of `state`, in its [unit](Criterion::unit), not smoothed; that of
+    /// [`Criterion::Energy`] is the [`energy_density`](Self::energy_density).
+    ///
+    /// # Validation
+    /// `val_stresses_of_a_bent_twisted_stretched_coil`
+    pub fn measure(&self, criterion: Criterion, state: &RodState) -> Vec<f64> {
         let mut terms = terms_of(&self.parameters, &self.tube, state);
         terms.extend(self.own_terms.iter().map(|term| term.make(state)));
         let range = self.tube.contact_diameter.max(self.tube.friction_range);
@@ -185,7 +194,7 @@ impl RodBattery {
             geometry: &Geometry::new(state),
             pairs: &pairs,
         };
-        crate::density::energy_density(&terms, at)
+        criterion.measure(&self.parameters, &terms, at)
     }
 
     /// The same battery started from `curve`: its [`centreline`](Self::centreline) with small displacements, like the
@@ -222,7 +231,13 @@ impl RodBattery {
         })
     }
 
-    /// The same battery started from the mirror image of its curve; the twist is not mirrored.
+    /// The same battery started from the mirror image of its curve.
+    ///
+    /// The rods are the same: neither their twist nor their natural shape is mirrored. It is the mirror image of this battery with the
+    /// opposite twist and the [mirrored](RestShape::mirrored) natural shape.
+    ///
+    /// # Validation
+    /// `law_fibres_with_a_natural_shape_are_mirrored_with_it`
     ///
     /// # Errors
     /// As [`new`](Self::new); none in practice, since the curve itself was accepted.
@@ -244,6 +259,12 @@ impl RodBattery {
     /// The start curve of each component, in the unit of the curves that were given.
     pub fn centrelines(&self) -> &[Polyline] {
         &self.centrelines
+    }
+
+    /// The same battery started from any state of as many edges.
+    #[cfg(test)]
+    pub(crate) fn starting_from(self, start: RodState) -> Self {
+        Self { start, ..self }
     }
 
     /// Length over thickness of the curve that was given.

@@ -43,4 +43,4 @@ pub fn smoothed_density(density: &[f64], rest_length: f64, closed: bool) -> Vec<
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

@@ -9,6 +9,7 @@
 //! [`RodUnits`](topo_core::RodUnits) leads to SI.
 
 mod battery;
+mod breaking;
 mod circle;
 pub mod contact;
 mod density;
@@ -34,6 +35,7 @@ pub use battery::hooks::RunHooks;
 pub use battery::links::Linking;
 pub use battery::protocol::Protocol;
 pub use battery::record::{PhaseReport, RodPhase, RodSample, RunRecord};
+pub use breaking::{Breaking, Broken, Criterion};
 pub use circle::{cut_circle_energy, cut_circle_time};
 pub use density::smoothed_density;
 pub use ends::{EndCondition, EndMotion, Ends, RodEnds};

@@ -1,16 +1,19 @@
 //! The figures: one file each; a new one is a file and a line in [`ALL`].
 
 mod beside;
+mod elastic_breaking;
 mod elastic_charging;
 mod elastic_configurations;
 mod elastic_discharge;
 mod figure;
 mod knots_table;
+mod links_table;
 pub(crate) mod nematic;
 pub(crate) mod series;
 pub(crate) mod shapes;
 #[cfg(test)]
 mod tests;
+mod tight;
 
 pub use figure::{Context, Drawn, Figure};
 pub(crate) use nematic::profile_scale;
@@ -23,13 +26,15 @@ use std::path::Path;
 use std::time::Instant;
 
 /// Every figure, in the order of the gallery.
-pub const ALL: [Figure; 6] = [
+pub const ALL: [Figure; 8] = [
     elastic_configurations::FIGURE,
     elastic_charging::FIGURE,
     elastic_discharge::FIGURE,
+    elastic_breaking::FIGURE,
     nematic::charging::FIGURE,
     nematic::discharge::FIGURE,
     knots_table::FIGURE,
+    links_table::FIGURE,
 ];
 
 /// A figure with its files written.

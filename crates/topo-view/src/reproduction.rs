@@ -10,8 +10,10 @@ mod tests;
 
 use crate::data::{NematicSweep, Sweep};
 use crate::error::ViewError;
+pub(crate) use claim::ByCriterion;
 pub use claim::Verdict;
 use claim::{Claim, Side, Tables, there};
+pub(crate) use elastic::{SLOW, words};
 pub use report::{section, write};
 use serde::Serialize;
 use std::path::Path;
@@ -77,6 +79,7 @@ pub fn findings(results: &Path) -> Result<Vec<Finding>, ViewError> {
         results: results.to_owned(),
         elastic: there(Sweep::read(results))?,
         choices: Vec::new(),
+        criteria: Vec::new(),
         last: None,
         nematic: there(NematicSweep::read(results))?,
     };
@@ -85,6 +88,7 @@ pub fn findings(results: &Path) -> Result<Vec<Finding>, ViewError> {
         match variant.purpose {
             Purpose::Choice => tables.choices.extend(Side::read(results, variant)?),
             Purpose::End => tables.last = Side::read(results, variant)?,
+            Purpose::Breaking => tables.criteria = ByCriterion::read(results, variant)?,
             Purpose::Friction => {}
         }
     }

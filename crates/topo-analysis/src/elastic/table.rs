@@ -24,6 +24,10 @@ pub struct SweepRow {
     pub twist: f64,
     /// Position of the cut, s/L; of a link along its components, one after the other.
     pub cut: f64,
+    /// Criteria by which the site was chosen, semicolons between them: energy, curvature, tension, von-mises; empty where the place was
+    /// given, and in older tables.
+    #[serde(default)]
+    pub cut_by: String,
     /// Reading of the slenderness.
     pub reading: String,
     /// Edges of the rod.
@@ -31,6 +35,10 @@ pub struct SweepRow {
     /// Slenderness L/h.
     #[serde(default)]
     pub slenderness: f64,
+    /// Natural length L of all fibres together, in h, whose T_0 and E_0 the row is in; empty in older tables of knots with a length of
+    /// their own.
+    #[serde(default)]
+    pub length: Option<f64>,
     /// Ratio α of twist to bending stiffness: no unit.
     #[serde(default)]
     pub twist_ratio: f64,

@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, HashMap};
 use topo_analysis::SweepRow;
 use topo_knots::KnotTable;
 
+use super::breaking::is_broken;
 use super::cost::weight;
 use super::keys::EDGES;
 use super::scene::ElasticScene;
@@ -54,7 +55,9 @@ impl ElasticScene {
             .collect();
         let mut cuts: BTreeMap<String, Vec<f64>> = BTreeMap::new();
         for row in rows {
-            if let Some(state) = states.get(&row.case) {
+            // what did not break by itself was not cut
+            let is_cut = self.charge.breaking.is_none() || is_broken(row);
+            if let Some(state) = states.get(&row.case).filter(|_| is_cut) {
                 cuts.entry(state.clone()).or_default().push(row.cut);
             }
         }

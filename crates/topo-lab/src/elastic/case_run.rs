@@ -59,6 +59,8 @@ pub(super) struct CutResults {
     pub discharge: Discharge,
     /// Place of the cut, s/L along all components, one after the other.
     pub cut: f64,
+    /// Criteria that chose it, as in tables.
+    pub cut_by: String,
     /// Of the energy before the cut.
     pub times: DischargeTimes,
     /// Of the energy that the cut left.

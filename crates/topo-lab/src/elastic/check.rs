@@ -2,13 +2,15 @@
 
 use std::collections::HashSet;
 
+use topo_core::InvalidValue;
 use topo_knots::KnotTable;
 use topo_rod::{IntegratorKind, Reading, RodError};
 
 use super::case::ElasticCase;
 use super::cost::BYTES;
 use super::keys::{EDGES, ROD_KEYS};
-use super::scene::ElasticScene;
+use super::rest::{RestKeys, TWIST};
+use super::scene::{BREAKS, ElasticScene};
 use crate::LabError;
 use crate::scene::{AxisValue, Document, check_count, product};
 
@@ -55,8 +57,18 @@ pub(super) fn faults(
     let refuse = |e| refused(document, e);
     see(scene.accuracy.checked().map(drop).map_err(refuse));
     see(scene.charge.checked().map(drop).map_err(refuse));
+    if let Some(si) = scene.si {
+        let wrong = |e: InvalidValue| {
+            let key = format!("si.{}", e.name);
+            document.wrong(&key, e.value, format!("expected {}", e.expected))
+        };
+        see(si.checked().map(drop).map_err(wrong));
+    }
     let has_twist = !scene.twists.is_empty();
     see(scene.discharge.checked(has_twist).map(drop).map_err(refuse));
+    if let Some(rest) = scene.rest.as_ref().filter(|rest| !rest.has_files()) {
+        see(rest.made().map(drop).map_err(|e| e.placed(document)));
+    }
     let closures = scene.timeline.closures;
     if closures > MOST_CLOSURES {
         let remedy = format!("at most {MOST_CLOSURES} closures of each sample are looked at");
@@ -201,6 +213,13 @@ pub(super) fn untied(scene: &ElasticScene, document: &Document<'_>) -> Option<La
     cases.err().map(|e| e.placed(document))
 }
 
+/// Why the natural shape of a file cannot be; where something is tied [`untied`] says so.
+pub(super) fn unrested(scene: &ElasticScene, document: &Document<'_>) -> Option<LabError> {
+    let rest = scene.rest.as_ref().filter(|rest| rest.has_files());
+    let made = rest.filter(|_| scene.tie.is_none())?.made();
+    made.err().map(|e| e.placed(document))
+}
+
 /// What the rod refuses, with the key of the scene.
 fn refused(document: &Document<'_>, error: RodError) -> LabError {
     match error {
@@ -241,6 +260,7 @@ pub(super) fn idle(scene: &ElasticScene) -> Vec<(&'static str, &'static str)> {
             idle.push((key, reason));
         }
     };
+    unless(scene.charge.breaking.is_none(), "discharge.cuts", BREAKS);
     let key = "rod.slenderness";
     unless(
         acts(key, &|c| c.rod.reading != Reading::OwnLength),
@@ -251,6 +271,16 @@ pub(super) fn idle(scene: &ElasticScene) -> Vec<(&'static str, &'static str)> {
         !scene.twists.is_empty(),
         "rod.poisson_ratio",
         "it changes nothing: no twist is modelled; give `twist`, or leave it out",
+    );
+    unless(
+        !scene.twists.is_empty(),
+        TWIST,
+        "it changes nothing: no twist is modelled; give `twist`, or leave it out",
+    );
+    unless(
+        !scene.rest.as_ref().is_some_and(RestKeys::is_empty),
+        "rod.rest",
+        "it says nothing: give `curvature` or `twist`, or leave the table out",
     );
     let key = "rod.seed";
     unless(

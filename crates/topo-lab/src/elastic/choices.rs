@@ -7,7 +7,7 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{self, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use topo_knots::TightenSettings;
-use topo_rod::Accuracy;
+use topo_rod::{Accuracy, Criterion};
 
 use crate::preset::Preset;
 use crate::scene::{listed, repeated_number};
@@ -23,17 +23,34 @@ pub enum Names {
 }
 
 /// Which sites are cut.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Cuts {
-    /// The maximum of the smoothed energy density.
-    #[default]
-    Argmax,
-    /// Every local maximum within 3 % of the largest.
-    NearTies,
+    /// Where the measure of a criterion, smoothed over π h, is largest.
+    Largest(Criterion),
+    /// Every local maximum of that measure within 3 % of the largest.
+    NearTies(Criterion),
+    /// The largest of each criterion, sites on which several agree once.
+    Criteria,
     /// K evenly spaced sites.
     All(usize),
     /// The vertices nearest to these places, s/L in [0, 1).
     At(Vec<f64>),
+}
+
+impl Default for Cuts {
+    fn default() -> Self {
+        Self::Largest(Criterion::Energy)
+    }
+}
+
+/// Words of the choices; those of the energy have been there before the other criteria.
+const ARGMAX: &str = "argmax";
+const NEAR_TIES: &str = "near-ties";
+const CRITERIA: &str = "criteria";
+
+/// The criterion of a name.
+fn criterion(name: &str) -> Option<Criterion> {
+    Criterion::ALL.into_iter().find(|c| c.name() == name)
 }
 
 impl TryFrom<String> for Cuts {
@@ -51,22 +68,29 @@ impl TryFrom<String> for Cuts {
                 .filter(|k| (1..=10_000).contains(k))
                 .map(Self::All)
         };
-        match text.as_str() {
-            "argmax" => Ok(Self::Argmax),
-            "near-ties" => Ok(Self::NearTies),
-            other => other
-                .strip_prefix("all:")
-                .and_then(all)
-                .ok_or_else(|| "write \"argmax\", \"near-ties\", \"all:K\" with K from 1 to 10000, or places s/L from 0 to below 1".to_owned()),
-        }
+        let found = match text.as_str() {
+            ARGMAX => Some(Self::Largest(Criterion::Energy)),
+            NEAR_TIES => Some(Self::NearTies(Criterion::Energy)),
+            CRITERIA => Some(Self::Criteria),
+            other => match other.split_once(':') {
+                Some(("all", k)) => all(k),
+                Some((NEAR_TIES, of)) => criterion(of).map(Self::NearTies),
+                _ => criterion(other).map(Self::Largest),
+            },
+        };
+        let names = Criterion::ALL.map(|c| format!("\"{c}\"")).join(", ");
+        found.ok_or_else(|| format!("write {names}, \"argmax\" (of the energy), \"near-ties\", \"near-ties:tension\" and the like, \"criteria\", \"all:K\" with K from 1 to 10000, or places s/L from 0 to below 1"))
     }
 }
 
 impl From<Cuts> for String {
     fn from(cuts: Cuts) -> Self {
         match cuts {
-            Cuts::Argmax => "argmax".into(),
-            Cuts::NearTies => "near-ties".into(),
+            Cuts::Largest(Criterion::Energy) => ARGMAX.into(),
+            Cuts::Largest(other) => other.name().into(),
+            Cuts::NearTies(Criterion::Energy) => NEAR_TIES.into(),
+            Cuts::NearTies(other) => format!("{NEAR_TIES}:{other}"),
+            Cuts::Criteria => CRITERIA.into(),
             Cuts::All(k) => format!("all:{k}"),
             Cuts::At(at) => at.iter().map(f64::to_string).collect::<Vec<_>>().join(","),
         }
@@ -100,7 +124,7 @@ impl Cuts {
     /// Why these cuts cannot be made in a rod of `n_edges` edges, if they cannot: two fall on one vertex.
     pub(super) fn clash(&self, n_edges: usize) -> Option<String> {
         match self {
-            Self::Argmax | Self::NearTies => None,
+            Self::Largest(_) | Self::NearTies(_) | Self::Criteria => None,
             Self::All(k) => (*k > n_edges).then(|| {
                 format!("a rod of {n_edges} edges has fewer vertices: ask for at most as many cuts")
             }),
@@ -134,7 +158,7 @@ impl<'de> Deserialize<'de> for Cuts {
             type Value = Cuts;
 
             fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("\"argmax\", \"near-ties\", \"all:K\", a place s/L or a list of places")
+                f.write_str("\"argmax\", \"near-ties\", a criterion such as \"von-mises\", \"criteria\", \"all:K\", a place s/L or a list of places")
             }
 
             fn visit_str<E: de::Error>(self, text: &str) -> Result<Cuts, E> {
@@ -173,8 +197,14 @@ impl JsonSchema for Cuts {
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
         let place = || json_schema!({ "type": "number", "minimum": 0, "exclusiveMaximum": 1 });
         json_schema!({ "anyOf": [
-            { "const": "argmax", "description": "The maximum of the smoothed energy density." },
-            { "const": "near-ties", "description": "Every local maximum within 3 % of the largest." },
+            { "const": ARGMAX, "description": "The maximum of the smoothed energy density." },
+            { "const": NEAR_TIES, "description": "Every local maximum within 3 % of the largest." },
+            { "const": "energy", "description": "As `\"argmax\"`." },
+            { "const": "curvature", "description": "The maximum of the curvature." },
+            { "const": "tension", "description": "Of the tension on the outer side of the bend, axial and of bending." },
+            { "const": "von-mises", "description": "Of the von Mises stress there, of tension and twist." },
+            { "type": "string", "pattern": "^near-ties:(energy|curvature|tension|von-mises)$", "x-form": "\"near-ties:tension\" and the like for the near ties of another criterion" },
+            { "const": CRITERIA, "description": "The maxima of all four, each site once." },
             { "type": "string", "pattern": "^all:[0-9]+$", "x-form": "\"all:K\" for K evenly spaced cuts" },
             place(),
             { "type": "array", "items": place(), "minItems": 1, "maxItems": MOST_CUTS },
@@ -245,9 +275,9 @@ impl Preset {
     /// Cuts made where the scene does not say.
     pub fn cuts(self) -> Cuts {
         if self == Self::Draft {
-            Cuts::Argmax
+            Cuts::Largest(Criterion::Energy)
         } else {
-            Cuts::NearTies
+            Cuts::NearTies(Criterion::Energy)
         }
     }
 
@@ -282,8 +312,13 @@ mod tests {
     #[test]
     fn choices_of_cuts_are_read_and_written() {
         for (text, cuts) in [
-            ("argmax", Cuts::Argmax),
-            ("near-ties", Cuts::NearTies),
+            ("argmax", Cuts::Largest(Criterion::Energy)),
+            ("near-ties", Cuts::NearTies(Criterion::Energy)),
+            ("curvature", Cuts::Largest(Criterion::Curvature)),
+            ("tension", Cuts::Largest(Criterion::Tension)),
+            ("von-mises", Cuts::Largest(Criterion::VonMises)),
+            ("near-ties:von-mises", Cuts::NearTies(Criterion::VonMises)),
+            ("criteria", Cuts::Criteria),
             ("all:12", Cuts::All(12)),
             ("0.25", Cuts::At(vec![0.25])),
             ("0,0.5,0.125", Cuts::At(vec![0.0, 0.5, 0.125])),
@@ -298,8 +333,13 @@ mod tests {
             serde_json::to_string(&Cuts::At(vec![0.25])).unwrap(),
             "[0.25]"
         );
+        // the present measure by its name
+        assert_eq!(Cuts::try_from("energy".to_owned()), Ok(Cuts::default()));
         for text in [
             "",
+            "stress",
+            "near-ties:",
+            "near-ties:stress",
             "all",
             "all:0",
             "all:10001",

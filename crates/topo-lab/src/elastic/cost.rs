@@ -21,7 +21,7 @@ pub(super) fn cost_of(
 ) -> Cost {
     let fixed = scene.fixed_cuts.as_ref();
     let fixed = fixed.map(|cuts| cuts.get(&case.state()).map_or(0, Vec::len));
-    let n_charges = if starts_from_two_images(case, entry) {
+    let n_charges = if starts_from_two_images(scene, case, entry) {
         2.0
     } else {
         1.0
@@ -49,7 +49,7 @@ pub(super) fn case_cost(scene: &ElasticScene, n_cuts: Option<usize>) -> Cost {
 /// Cost of a case of a scene, over that of a charge with one discharge.
 pub(super) fn weight(scene: &ElasticScene) -> f64 {
     let once = ElasticScene {
-        cuts: Cuts::Argmax,
+        cuts: Cuts::default(),
         ..scene.clone()
     };
     case_cost(scene, None).seconds / case_cost(&once, None).seconds
@@ -67,8 +67,10 @@ struct Work {
 fn cuts(scene: &ElasticScene, known: Option<usize>) -> f64 {
     match (known, &scene.cuts) {
         (Some(n), _) => n as f64,
-        (None, Cuts::Argmax) => 1.0,
-        (None, Cuts::NearTies) => MEAN_NEAR_TIES,
+        _ if scene.charge.breaking.is_some() => 1.0,
+        (None, Cuts::Largest(_)) => 1.0,
+        (None, Cuts::NearTies(_)) => MEAN_NEAR_TIES,
+        (None, Cuts::Criteria) => MEAN_CRITERIA,
         (None, Cuts::All(k)) => *k as f64,
         (None, Cuts::At(places)) => places.len() as f64,
     }
@@ -120,6 +122,8 @@ const WITHOUT_FRICTION: f64 = 0.55;
 const WITHOUT_TWIST: f64 = 0.8;
 /// Near-tied cuts of a case, on average over the published sweep.
 const MEAN_NEAR_TIES: f64 = 4.5;
+/// Sites on which the criteria do not agree, on average over the untwisted knots.
+const MEAN_CRITERIA: f64 = 2.0;
 /// Crossings beyond those that were measured.
 const MOST_CROSSINGS: u32 = 10;
 /// Bytes that a case holds at N = 200.

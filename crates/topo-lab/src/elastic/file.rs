@@ -9,7 +9,7 @@
 //! [rod.friction]            # leave the table out: no friction is modelled
 //! ratio = 0.1               # eta_f / eta
 //! [discharge]
-//! cuts = "near-ties"        # "argmax", "near-ties", "all:K", a place s/L or a list of places
+//! cuts = "near-ties"        # "argmax", "near-ties", "curvature", "tension", "von-mises", "criteria", "all:K", a place s/L or a list
 //! until_released = 0.999
 //! [accuracy]
 //! preset = "standard"
@@ -17,6 +17,8 @@
 //!
 //! Every number of the rod, its reading and its friction range, and `edges` may be a list, numbers also a range: the cases are the
 //! product. `knots = "my-knots"` as a first line names a folder of knot files, beside the scene's file.
+//!
+//! `[charge.break]` instead of `cuts` lets the fibre break by itself; `[si]` adds tables in seconds and joules.
 //!
 //! Instead of the table `[accuracy]`, the first line may say `accuracy = 0.02` (relative error of t99) or `budget = "10 min"`.
 
@@ -28,8 +30,8 @@ use std::sync::OnceLock;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use topo_rod::{
-    Accuracy, ChargeSettings, ContactParameters, DischargeSettings, Ends, FrictionParameters,
-    IntegratorKind, Reading, RodParameters,
+    Accuracy, Breaking, ChargeSettings, ContactParameters, DischargeSettings, Ends,
+    FrictionParameters, IntegratorKind, Reading, RodParameters,
 };
 
 use super::case::ElasticCase;
@@ -37,7 +39,9 @@ use super::check;
 use super::choices::{Cuts, Names, by_preset};
 use super::defaults::{self, poisson_ratio_of};
 use super::keys::{EDGES, ROD_KEYS};
+use super::rest::{RestKeys, RestTable};
 use super::scene::{ElasticScene, OwnKnots};
+use super::si::Si;
 use super::tie::Word;
 use tied::TiedKeys;
 
@@ -92,6 +96,8 @@ struct RodTable {
     contact: Option<ContactParameters>,
     /// Friction between strands; without the table none is modelled.
     friction: Option<FrictionParameters>,
+    /// Natural shape of the fibre; without the table it is straight and untwisted at rest.
+    rest: Option<RestTable>,
     /// Largest random displacement of the start curve.
     #[serde(default = "defaults::imperfection")]
     #[schemars(range(min = 0, max = 0.5), extend("x-unit" = "h"), example = 0.01)]
@@ -156,6 +162,9 @@ struct ChargeTable {
     /// Duration of the relaxation.
     #[schemars(extend("x-unit" = "T_0", "default" = ChargeSettings::default().duration, "exclusiveMinimum" = 0), example = 1.0)]
     duration: Option<f64>,
+    /// The fibre breaks by itself, instead of being cut after the charge.
+    #[serde(rename = "break")]
+    breaking: Option<Breaking>,
 }
 
 /// A scene of knotted fibres.
@@ -167,6 +176,8 @@ struct File {
     charge: ChargeTable,
     #[serde(default)]
     discharge: DischargeTable,
+    /// What the fibre is made of, for tables in SI units; no result depends on it.
+    si: Option<Si>,
     /// Largest relative error of t99, instead of the table [accuracy].
     #[serde(default)]
     #[schemars(extend("x-unit" = "1", "x-default" = "settings"))]
@@ -210,6 +221,7 @@ impl File {
                 friction: rod.friction,
                 ..RodParameters::default()
             },
+            rest: None,
             imperfection: rod.imperfection,
             seed: rod.seed,
         }
@@ -237,16 +249,22 @@ impl File {
         let (accuracy, discharge) = (standard.accuracy, standard.discharge);
         let run = self.discharge;
         let beside = path.parent().unwrap_or(Path::new("")).to_owned();
+        let rest = self
+            .rod
+            .rest
+            .map(|table| RestKeys::new(table, beside.clone()));
         Ok(ElasticScene {
             folder: folder_of(path)?,
             knots,
             tie,
             twists,
             rod,
+            rest,
             imperfection,
             seed,
             charge: ChargeSettings {
                 duration: self.charge.duration.unwrap_or(standard.charge.duration),
+                breaking: self.charge.breaking,
                 ..standard.charge
             },
             cuts: run.cuts.unwrap_or(standard.cuts),
@@ -269,6 +287,7 @@ impl File {
                 ..accuracy
             },
             axes,
+            si: self.si,
             own_knots: self.knots.map(|written| OwnKnots { written, beside }),
             goal,
             ..standard
@@ -316,6 +335,7 @@ impl ElasticScene {
                 faults.extend(check::unknown_knots(&scene, document));
                 if faults.is_empty() {
                     faults.extend(check::untied(&scene, document));
+                    faults.extend(check::unrested(&scene, document));
                 }
                 faults
             }
@@ -346,11 +366,13 @@ impl ElasticScene {
                 stretch_ratio: rod.stretch_ratio,
                 contact: rod.contact,
                 friction: rod.friction,
+                rest: self.rest.as_ref().map(RestKeys::table),
                 imperfection: self.imperfection,
                 seed: self.seed,
             },
             charge: ChargeTable {
                 duration: Some(self.charge.duration),
+                breaking: self.charge.breaking,
             },
             discharge: DischargeTable {
                 cuts: Some(self.cuts.clone()),
@@ -359,6 +381,7 @@ impl ElasticScene {
                 closures: Some(self.timeline.closures),
                 ends: self.discharge.ends,
             },
+            si: self.si,
             accuracy: GoalOr::Settings(AccuracyTable {
                 preset: self.preset,
                 edges: Some(rod.n_edges),

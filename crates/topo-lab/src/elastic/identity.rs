@@ -18,7 +18,7 @@ pub(crate) fn fingerprint(scene: &ElasticScene, case: &ElasticCase, entry: &Entr
         "seed": case.seed, "charge": scene.charge, "cuts": scene.cuts, "discharge": scene.discharge,
         "timeline": scene.timeline, "accuracy": scene.accuracy, "guards": Guards::default(),
     });
-    if starts_from_two_images(case, entry) {
+    if starts_from_two_images(scene, case, entry) {
         all["images"] = 2.into();
     }
     if let Some(cuts) = &scene.fixed_cuts {
@@ -54,8 +54,18 @@ pub(super) fn settings_of(scene: &ElasticScene, case: &ElasticCase) -> serde_jso
     all
 }
 
-/// Whether a twisted rod may start from the tight curve or from its mirror image, being the same knot.
-pub(super) fn starts_from_two_images(case: &ElasticCase, entry: &Entry) -> bool {
+/// Whether a rod that is twisted, or not its own mirror image at rest, may start from the tight curve or from its mirror image, being
+/// the same knot. One that may break by itself starts from the curve alone, as energies of two rods that broke at two times say
+/// nothing about which to keep.
+pub(super) fn starts_from_two_images(
+    scene: &ElasticScene,
+    case: &ElasticCase,
+    entry: &Entry,
+) -> bool {
     let is_twisted = case.rod.twist.is_some_and(|twist| twist != 0.0);
-    is_twisted && entry.is_amphichiral_knot() && case.is_tightened()
+    let has_hand = is_twisted || case.rest.as_ref().is_some_and(|rest| rest.is_chiral());
+    has_hand
+        && scene.charge.breaking.is_none()
+        && entry.is_amphichiral_knot()
+        && case.is_tightened()
 }

@@ -1,11 +1,12 @@
 //! What tells the cases of elastic scenes apart: the names of their folders and the settings in their rows.
 
 use serde_json::json;
-use topo_rod::{FrictionRange, RodParameters};
+use topo_rod::{FrictionRange, Reading, RodParameters};
 
 use super::case::ElasticCase;
 use super::identity::settings_of;
 use super::own_term::OwnTerm;
+use super::rest::RestKeys;
 use super::scene::{ElasticScene, OwnKnots};
 use super::tie::Tie;
 use crate::preset::Preset;
@@ -45,6 +46,8 @@ impl ElasticScene {
             ..usual.rod.clone()
         };
         let name = name.changes(&value(rod), &value(&said), &[]);
+        let rest = case.rest.as_ref().map_or(json!({}), |rest| rest.said());
+        let name = name.changes(&json!({ "rest": rest }), &json!({ "rest": {} }), &[]);
         let labels = self.own_terms.iter().map(OwnTerm::label);
         labels
             .fold(name, |name, label| name.word(label))
@@ -69,6 +72,7 @@ impl ElasticScene {
             reading: rod.reading.name().to_owned(),
             edges: rod.n_edges,
             slenderness: rod.slenderness,
+            length: (rod.reading != Reading::OwnLength).then_some(rod.slenderness),
             twist_ratio: rod.twist_ratio,
             stretch_ratio: rod.stretch_ratio,
             contact_stiffness: rod.contact.map(|c| c.stiffness),
@@ -94,6 +98,7 @@ impl ElasticScene {
             goal: None,
             own_knots: own_knots.as_deref().map(OwnKnots::at),
             tie: self.tie.as_ref().map(Tie::found_from_anywhere),
+            rest: self.rest.as_ref().map(RestKeys::found_from_anywhere),
             ..self.clone()
         };
         let labels = self.own_terms.iter().map(OwnTerm::label);
@@ -120,6 +125,8 @@ impl Row for SweepRow {
             name: blank.name,
             components: blank.components,
             slenderness: blank.slenderness,
+            // that of a knot's own length is known since it was tied
+            length: blank.length.or(self.length),
             twist_ratio: blank.twist_ratio,
             stretch_ratio: blank.stretch_ratio,
             contact_stiffness: blank.contact_stiffness,
@@ -137,10 +144,17 @@ impl Row for SweepRow {
 mod tests {
     use std::collections::BTreeMap;
 
-    use topo_rod::Reading;
+    use topo_rod::{Breaking, Criterion, Reading};
 
     use super::*;
     use crate::elastic::Cuts;
+
+    fn breaks(criterion: Criterion, threshold: f64) -> Option<Breaking> {
+        Some(Breaking {
+            criterion,
+            threshold,
+        })
+    }
 
     /// A number of a scene changed by a factor.
     const NUMBERS: [fn(&mut ElasticScene, f64); 12] = [
@@ -159,7 +173,7 @@ mod tests {
     ];
 
     /// A choice of a scene made in another way.
-    const CHOICES: [fn(&mut ElasticScene); 14] = [
+    const CHOICES: [fn(&mut ElasticScene); 20] = [
         |s| s.rod.contact = None,
         |s| s.rod.friction = None,
         |s| (s.rod.contact, s.rod.friction) = (None, None),
@@ -167,7 +181,13 @@ mod tests {
         |s| s.rod.n_edges = 100,
         |s| s.rod.reading = Reading::Hard,
         |s| s.seed = 7,
-        |s| s.cuts = Cuts::NearTies,
+        |s| s.cuts = Cuts::NearTies(Criterion::Energy),
+        |s| s.cuts = Cuts::NearTies(Criterion::Tension),
+        |s| s.cuts = Cuts::Largest(Criterion::Tension),
+        |s| s.cuts = Cuts::Criteria,
+        |s| s.charge.breaking = breaks(Criterion::Tension, 0.8),
+        |s| s.charge.breaking = breaks(Criterion::VonMises, 0.8),
+        |s| s.charge.breaking = breaks(Criterion::VonMises, 0.9),
         |s| s.cuts = Cuts::All(3),
         |s| s.timeline.closures = 0,
         |s| s.accuracy.reuse = 1,
@@ -219,7 +239,7 @@ mod tests {
             see(&scene, Some(0.0));
         }
         assert!(names.values().all(|n| *n == 1), "{names:#?}");
-        assert_eq!(names.len(), 12 + 12 * 8 + 14);
+        assert_eq!(names.len(), 12 + 12 * 8 + 20);
         for plain in [
             "3_1_twist+0.00_shrunk_n200",
             "3_1_untwisted_shrunk_n200",

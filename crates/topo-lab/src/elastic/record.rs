@@ -267,19 +267,23 @@ fn about(made: &CaseResults<'_>) -> Result<About, LabError> {
         .iter()
         .map(|r| r.discharge.record.report.ledger_residual)
         .fold(charged.record().report.ledger_residual, f64::max);
+    let mut more = json!({
+        "tube": charged.battery().tube(),
+        "start": { "length_over_radius": start.length_over_radius(), "knot": entry },
+        "guards": Guards::default(),
+        "ledger_residual": ledger_residual,
+        "charge": charged.record().report,
+        "cuts": cuts,
+    });
+    if scene.charge.breaking.is_some() {
+        more["broken"] = json!(charged.broken());
+    }
     Ok(About {
         case: value(case),
         scene: value(scene),
         seed: Some(case.seed),
         units: ["h", "T_0 = 2 L eta/(h E_b)", "E_0 = E_b h^2 L"],
         ledger_residual,
-        more: json!({
-            "tube": charged.battery().tube(),
-            "start": { "length_over_radius": start.length_over_radius(), "knot": entry },
-            "guards": Guards::default(),
-            "ledger_residual": ledger_residual,
-            "charge": charged.record().report,
-            "cuts": cuts,
-        }),
+        more,
     })
 }

@@ -7,13 +7,14 @@ use topo_core::{CpuClock, CurveError, Polyline, Progress, StopReason};
 use topo_knots::{KnotError, KnotTable, identify};
 use topo_rod::{ChargedRod, Discharge, Guards, PhaseReport, RodBattery, RodSample, RunHooks};
 
+use super::breaking;
 use super::case::ElasticCase;
 use super::case_run::{CaseInputs, CutResults};
 use super::identity::starts_from_two_images;
 use super::imperfection::perturbed;
 use super::observable::further;
 use super::record::{CaseResults, write_case};
-use super::sites::{place, site, sites};
+use super::sites::{Chosen, place, site, sites};
 use super::tied::label;
 use crate::LabError;
 use crate::folder::{Outcome, forget_checkpoints};
@@ -35,7 +36,9 @@ pub(crate) struct ChargedCase {
 /// The tight curve of an amphichiral knot need not be its own mirror image, as that of 6_3, and a rod so tightly tied stays
 /// in the one of the two minima that it starts from. The image that stores less under the twist of the case is taken, so
 /// that the energy of such a knot does not depend on the sign of the twist. The other image stores what the one kept would
-/// under the opposite twist: how far a single curve sees the sign is the difference of the two energies.
+/// under the opposite twist: how far a single curve sees the sign is the difference of the two energies. A natural shape is that of the
+/// fibre, whichever image it is tied along: one with a hand is charged from both images without twist too, and the energy of the other
+/// is that of the mirrored shape.
 ///
 /// The mirror image of a knot starts from the mirror image of its start curve, imperfections included, so that at the opposite
 /// twist all of its run is the mirror image of the knot's.
@@ -60,6 +63,9 @@ pub(crate) fn charge(
     let centrelines = start.centrelines()?;
     let battery = RodBattery::link(&case.rod, &scene.accuracy, Guards::default(), &centrelines);
     let mut battery = battery.map_err(refuse)?;
+    if let Some(rest) = &case.rest {
+        battery = rest.of(battery).map_err(refuse)?;
+    }
     for term in &scene.own_terms {
         battery = term.added_to(battery).map_err(refuse)?;
     }
@@ -79,7 +85,7 @@ pub(crate) fn charge(
         battery.charge(&scene.charge, hooks).map_err(refuse)
     };
     let charged = from(&battery, 0)?;
-    if !starts_from_two_images(case, &entry) {
+    if !starts_from_two_images(scene, case, &entry) {
         return Ok(ChargedCase {
             cpu_seconds: charged.record().report.cpu_seconds,
             rod: charged,
@@ -157,16 +163,17 @@ fn attempt(
     base.energy_other_image = charged_case.energy_other_image;
     let mut runs = Vec::new();
     if charged.record().report.stop.is_success() {
-        for (k, &at) in sites.iter().enumerate() {
+        for (k, chosen) in sites.iter().enumerate() {
             hooks.keep_in(&place.checkpoint(&format!("discharge-{k}")));
-            let Some(mut run) = follow(inputs, charged, at, &mut hooks)? else {
+            let Some(mut run) = follow(inputs, charged, chosen, &mut hooks)? else {
                 return Ok(None);
             };
             let cpu_seconds = run.cpu_seconds + charge_seconds / sites.len() as f64;
             run.row = discharge_row(&base, &run, cpu_seconds);
             runs.push(run);
         }
-    } else {
+    }
+    if runs.is_empty() {
         base.cpu_seconds = charge_seconds;
     }
     let rows: Vec<SweepRow> = if runs.is_empty() {
@@ -206,10 +213,10 @@ fn finish(made: &CaseResults<'_>, place: &Place<'_>) -> Result<(), LabError> {
 fn follow(
     inputs: &CaseInputs<'_>,
     charged: &ChargedRod,
-    at: f64,
+    chosen: &Chosen,
     hooks: &mut RunHooks<'_>,
 ) -> Result<Option<CutResults>, LabError> {
-    let site = site(charged, at);
+    let site = site(charged, chosen.place);
     let discharge = inputs.discharge(charged, site, &inputs.scene.discharge, hooks)?;
     if hooks.is_interrupted() {
         return Ok(None);
@@ -226,6 +233,7 @@ fn follow(
         times_after_cut: released(discharge.after_cut),
         cpu_seconds: discharge.record.report.cpu_seconds + clock.seconds(),
         cut: place(charged, discharge.component, discharge.at),
+        cut_by: chosen.criteria(),
         discharge,
         timeline,
         row: SweepRow::default(),
@@ -308,6 +316,7 @@ fn charged_row(inputs: &CaseInputs<'_>, charged: &ChargedRod) -> SweepRow {
         steps: report.n_steps,
         rejected: report.rejections.total(),
         linking: linking(report),
+        length: Some(charged.battery().tube().length),
         ..inputs.scene.blank_row(inputs.case)
     };
     if let Some(last) = record.samples.last() {
@@ -317,6 +326,12 @@ fn charged_row(inputs: &CaseInputs<'_>, charged: &ChargedRod) -> SweepRow {
         row.stretch = last.stored.of("stretch");
         row.further = further(last, &inputs.scene.observables);
         (row.writhe, row.total_twist) = (last.writhe, last.total_twist);
+    }
+    if let Some(bears) = inputs.scene.charge.breaking {
+        row.further.extend(breaking::columns(bears, charged));
+        if let Some(text) = breaking::unbroken(bears, charged) {
+            row.warnings.push(text);
+        }
     }
     phase_warnings("charge", report, &mut row.warnings);
     if case.rod.contact.is_none() {
@@ -362,6 +377,7 @@ fn discharge_row(base: &SweepRow, run: &CutResults, cpu_seconds: f64) -> SweepRo
     let (times, after_cut) = (&run.times, &run.times_after_cut);
     let mut row = SweepRow {
         cut: run.cut,
+        cut_by: run.cut_by.clone(),
         t50: at(times, 0.5),
         t90: at(times, 0.9),
         t95: at(times, 0.95),
@@ -395,6 +411,7 @@ mod tests {
     use crate::{ElasticScene, Preset};
     use topo_knots::{TightenSettings, tighten_entry};
     use topo_rod::energy::RodParts;
+    use topo_rod::{Breaking, Criterion};
 
     /// The two images of the tight 6_3 are two curves: either one alone stores energies that depend on the sign of the twist, by the
     /// 2.4e-3 that the finest runs give at 80 edges too. The one that stores less is kept and the other one's energy reported.
@@ -465,7 +482,14 @@ mod tests {
         ] {
             let case = case(knot, twist);
             let entry = case.entry(&table).unwrap();
-            assert_eq!(starts_from_two_images(&case, &entry), two);
+            assert_eq!(starts_from_two_images(&scene, &case, &entry), two);
+            let breaking = Breaking {
+                criterion: Criterion::Tension,
+                threshold: 0.5,
+            };
+            let mut breaks = scene.clone();
+            breaks.charge.breaking = Some(breaking);
+            assert!(!starts_from_two_images(&breaks, &case, &entry));
         }
     }
 }

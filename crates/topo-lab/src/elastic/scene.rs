@@ -15,6 +15,8 @@ use super::defaults;
 use super::keys::{EDGES, ROD_KEYS};
 use super::observable::Observable;
 use super::own_term::OwnTerm;
+use super::rest::RestKeys;
+use super::si::Si;
 use super::tie::Tie;
 use super::tied::Tied;
 use crate::LabError;
@@ -37,6 +39,9 @@ pub struct ElasticScene {
     pub twists: Vec<f64>,
     /// Material, reading and resolution, its twist not yet set.
     pub rod: RodParameters,
+    /// Natural shape of the fibres, if it is not straight and untwisted.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rest: Option<RestKeys>,
     /// Size of the random perturbation of the start curve, in h: symmetric states that are unstable are left by it.
     pub imperfection: f64,
     /// Seed of that perturbation and of the closures.
@@ -54,6 +59,9 @@ pub struct ElasticScene {
     /// Keys with several values: the cases are their product, the last axis running fastest.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub axes: Vec<Axis>,
+    /// What the fibre is in SI units; no number of a case depends on it.
+    #[serde(skip)]
+    pub si: Option<Si>,
     /// Folder of knots besides the built-in ones.
     #[serde(skip)]
     pub own_knots: Option<OwnKnots>,
@@ -99,12 +107,19 @@ impl OwnKnots {
     }
 }
 
+/// Why a fibre that breaks by itself has no cuts.
+pub(super) const BREAKS: &str =
+    "the fibre breaks by itself, as the table [charge.break] says: leave out one of the two";
+
 impl ElasticCase {
     /// The charged state, whatever the resolution: knot, twist, and what is not as published.
     pub fn state(&self) -> String {
         let mut name = format!("{} {}", self.knot, self.rod.twist.unwrap_or(0.0));
         if let Some(tied) = &self.tied {
             name = format!("{name} {}", tied.word);
+        }
+        if let Some(rest) = &self.rest {
+            name.push_str(&format!(" rest={}", rest.said()));
         }
         let published = ElasticScene::published(Preset::default()).case(&self.knot, None);
         for key in ROD_KEYS.iter().filter(|key| key.key != EDGES) {
@@ -136,6 +151,7 @@ impl ElasticScene {
                 n_edges: preset.edges(),
                 ..RodParameters::default()
             },
+            rest: None,
             imperfection: defaults::imperfection(),
             seed: defaults::seed(),
             charge: ChargeSettings::default(),
@@ -144,6 +160,7 @@ impl ElasticScene {
             timeline: TimelineSettings::default(),
             accuracy: preset.accuracy(),
             axes: Vec::new(),
+            si: None,
             own_knots: None,
             preset,
             tighten: preset.tighten(),
@@ -167,7 +184,7 @@ impl ElasticScene {
     ///
     /// # Errors
     /// An unknown knot, or one that is there twice, be it by an alias or besides \"all\"; curves that cannot be read or leave no room
-    /// for the fibre.
+    /// for the fibre; a natural shape that cannot be read.
     pub fn cases(&self, table: &KnotTable) -> Result<Vec<ElasticCase>, LabError> {
         let mut names: Vec<String> = Vec::new();
         let mut seen = HashSet::new();
@@ -190,9 +207,11 @@ impl ElasticScene {
         } else {
             self.twists.iter().copied().map(Some).collect()
         };
+        let rest = self.rest.as_ref().map(RestKeys::made).transpose()?;
         let of = |knot: &str, tied: Option<&Arc<Tied>>| -> Vec<ElasticCase> {
             let case = |t: &Option<f64>| ElasticCase {
                 tied: tied.cloned(),
+                rest: rest.cloned(),
                 ..self.case(knot, *t)
             };
             let twisted = twists.iter().map(case);
@@ -228,6 +247,7 @@ impl ElasticScene {
                 twist,
                 ..self.rod.clone()
             },
+            rest: None,
             imperfection: self.imperfection,
             seed: self.seed,
         }
@@ -236,8 +256,11 @@ impl ElasticScene {
     /// The scene with other cuts.
     ///
     /// # Errors
-    /// Cuts that fall on one vertex of a rod, and what would be right.
+    /// Cuts that fall on one vertex of a rod, or cuts of a fibre that breaks by itself, and what would be right.
     pub fn with_cuts(mut self, cuts: Cuts) -> Result<Self, String> {
+        if self.charge.breaking.is_some() {
+            return Err(BREAKS.to_owned());
+        }
         for case in product(&ROD_KEYS, &self.axes, self.case("", None)) {
             cuts.clash(case.rod.n_edges).map_or(Ok(()), Err)?;
         }

@@ -1,30 +1,83 @@
 //! Where charged rods are cut: places along all components, one after the other.
 
-use topo_rod::{Chain, ChargedRod, CutCandidate, CutSite};
+use topo_rod::{Chain, ChargedRod, Criterion, CutCandidate, CutSite};
 
 use super::case_run::CaseInputs;
 use super::choices::{Cuts, NEAR_TIE};
 
-/// Where the scene cuts the rod, s/L along all components.
-pub(super) fn sites(inputs: &CaseInputs<'_>, charged: &ChargedRod) -> Vec<f64> {
-    let CaseInputs { scene, case, .. } = *inputs;
-    match &scene.cuts {
-        _ if scene.fixed_cuts.is_some() => {
-            let fixed = scene.fixed_cuts.as_ref();
-            fixed
-                .and_then(|cuts| cuts.get(&case.state()))
-                .cloned()
-                .unwrap_or_default()
+/// A cut to be made.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Chosen {
+    /// Its place, s/L along all components.
+    pub place: f64,
+    /// The criteria that chose it; none of a place that was given.
+    pub by: Vec<Criterion>,
+}
+
+impl Chosen {
+    fn given(place: &f64) -> Self {
+        Self {
+            place: *place,
+            by: Vec::new(),
         }
-        Cuts::Argmax => vec![along(charged, &charged.cut_candidates(0.0)[0])],
-        Cuts::NearTies => charged
-            .cut_candidates(NEAR_TIE)
-            .iter()
-            .map(|c| along(charged, c))
-            .collect(),
-        Cuts::All(k) => (0..*k).map(|i| i as f64 / *k as f64).collect(),
-        Cuts::At(places) => places.clone(),
     }
+
+    fn by(criterion: Criterion, charged: &ChargedRod, found: &CutCandidate) -> Self {
+        Self {
+            place: along(charged, found),
+            by: vec![criterion],
+        }
+    }
+
+    /// The criteria, as in tables.
+    pub(super) fn criteria(&self) -> String {
+        let names = self.by.iter().map(|c| c.name());
+        names.collect::<Vec<_>>().join(";")
+    }
+}
+
+/// Where the scene cuts the rod; nowhere if it should have broken by itself and did not.
+pub(super) fn sites(inputs: &CaseInputs<'_>, charged: &ChargedRod) -> Vec<Chosen> {
+    let CaseInputs { scene, case, .. } = *inputs;
+    if let Some(fixed) = &scene.fixed_cuts {
+        let places = fixed.get(&case.state());
+        return places.into_iter().flatten().map(Chosen::given).collect();
+    }
+    if let Some(breaking) = scene.charge.breaking {
+        let broken = charged.broken().into_iter();
+        return broken
+            .map(|broken| Chosen::by(breaking.criterion, charged, &broken.site))
+            .collect();
+    }
+    let within = |criterion: Criterion, share: f64| {
+        let found = charged.cut_candidates_by(criterion, share);
+        let all = found.iter().map(|c| Chosen::by(criterion, charged, c));
+        all.collect::<Vec<_>>()
+    };
+    match &scene.cuts {
+        Cuts::Largest(criterion) => within(*criterion, 0.0).into_iter().take(1).collect(),
+        Cuts::NearTies(criterion) => within(*criterion, NEAR_TIE),
+        Cuts::Criteria => {
+            let each = Criterion::ALL.map(|c| within(c, 0.0).into_iter().next());
+            agreeing(each.into_iter().flatten())
+        }
+        Cuts::All(k) => (0..*k)
+            .map(|i| Chosen::given(&(i as f64 / *k as f64)))
+            .collect(),
+        Cuts::At(places) => places.iter().map(Chosen::given).collect(),
+    }
+}
+
+/// Each site once, with all criteria that chose it, in the order in which they come.
+fn agreeing(all: impl Iterator<Item = Chosen>) -> Vec<Chosen> {
+    let mut sites: Vec<Chosen> = Vec::new();
+    for one in all {
+        match sites.iter_mut().find(|site| site.place == one.place) {
+            Some(site) => site.by.extend(one.by),
+            None => sites.push(one),
+        }
+    }
+    sites
 }
 
 /// Share of a length within which a place counts as the next component's first.
@@ -64,4 +117,28 @@ pub(super) fn site(charged: &ChargedRod, place: f64) -> CutSite {
         s = (s - chain.length()).max(0.0);
     }
     CutSite::At(place)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn criteria_that_agree_cut_once() {
+        let at = |place, criterion| Chosen {
+            place,
+            by: vec![criterion],
+        };
+        let [energy, curvature, tension, mises] = Criterion::ALL;
+        let all = [
+            at(0.25, energy),
+            at(0.5, curvature),
+            at(0.25, tension),
+            at(0.25, mises),
+        ];
+        let sites = agreeing(all.into_iter());
+        let said: Vec<_> = sites.iter().map(|s| (s.place, s.criteria())).collect();
+        let expected = [(0.25, "energy;tension;von-mises"), (0.5, "curvature")];
+        assert_eq!(said, expected.map(|(p, by)| (p, by.to_owned())));
+    }
 }

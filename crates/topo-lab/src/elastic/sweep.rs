@@ -2,10 +2,12 @@
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
+use std::path::Path;
 
 use topo_knots::KnotTable;
 
 use super::battery::Elastic;
+use super::breaking;
 use super::case::ElasticCase;
 use super::case_run::CaseInputs;
 use super::cost::cost_of;
@@ -13,6 +15,7 @@ use super::identity::fingerprint;
 use super::print;
 use super::run;
 use super::scene::ElasticScene;
+use super::si;
 use super::starts;
 use super::tied::{Made, Start};
 use crate::LabError;
@@ -155,15 +158,28 @@ impl Experiment for Rods<'_> {
     }
 
     fn header(&self) -> String {
-        print::HEADER.to_owned()
+        print::header(self.scene.si.as_ref())
     }
 
     fn legend(&self) -> &'static [&'static str] {
-        print::LEGEND
+        print::legend(self.scene.si.as_ref())
     }
 
     fn line(&self, row: &SweepRow) -> String {
-        print::line(row)
+        print::line(row, self.scene.si.as_ref())
+    }
+
+    fn findings(&self, rows: &[SweepRow]) -> Vec<String> {
+        let breaking = self.scene.charge.breaking;
+        let of = |bears| {
+            rows.iter()
+                .filter_map(move |row| breaking::line(bears, row))
+        };
+        breaking.into_iter().flat_map(of).collect()
+    }
+
+    fn write_beside(&self, folder: &Path, rows: &[SweepRow]) -> Result<(), LabError> {
+        si::write(folder, self.scene.si.as_ref(), rows)
     }
 
     fn choose_settings(&mut self, jobs: usize) -> Result<Option<Choice>, LabError> {
@@ -214,7 +230,6 @@ pub fn estimate_sweep(
 
 #[cfg(test)]
 mod tests {
-    use std::path::Path;
     use std::sync::atomic::Ordering;
 
     use topo_core::Phase;

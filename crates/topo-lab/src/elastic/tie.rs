@@ -73,7 +73,7 @@ const MEASURED: [usize; 2] = [200, 8];
 const ROUNDING: f64 = 1e-9;
 
 /// The refusal of a key's value.
-fn wrong(key: &str, value: impl Display, remedy: impl Display) -> LabError {
+pub(super) fn wrong(key: &str, value: impl Display, remedy: impl Display) -> LabError {
     let fault = SceneFault::of_file(
         Path::new("the scene"),
         value.to_string(),
@@ -261,11 +261,11 @@ impl Tie {
 }
 
 /// Digits of an identity that a name has.
-fn digits(identity: &str) -> &str {
+pub(super) fn digits(identity: &str) -> &str {
     identity.get(..10).unwrap_or(identity)
 }
 
-fn quoted(name: &str) -> String {
+pub(super) fn quoted(name: &str) -> String {
     format!("\"{name}\"")
 }
 

@@ -15,6 +15,8 @@ pub enum Purpose {
     Friction,
     /// The last of the energy.
     End,
+    /// What the reading of "the point of maximum stress" does to the untwisted knots.
+    Breaking,
 }
 
 /// A scene beside the sweep; its tables lie in a folder of their own.
@@ -38,8 +40,8 @@ const RATIOS: [f64; 2] = [0.0, 1.0];
 const LAST_SHARE: f64 = 0.99999;
 
 impl ElasticScene {
-    /// The scenes run beside this sweep: the untwisted knots under four other choices, all knots at five twists followed to
-    /// 99.999 %, and beyond draft the untwisted knots, cut once, in a study of friction.
+    /// The scenes run beside this sweep: the untwisted knots under four other choices, and cut where each criterion has its largest;
+    /// all knots at five twists followed to 99.999 %; and beyond draft the untwisted knots, cut once, in a study of friction.
     pub fn variants(&self) -> Vec<Variant> {
         let mut variants = vec![Variant {
             name: "friction range of the contact diameter".to_owned(),
@@ -58,6 +60,7 @@ impl ElasticScene {
             });
         }
         variants.push(self.last());
+        variants.push(self.breaking());
         if self.preset != Preset::Draft {
             variants.extend(self.friction_study());
         }
@@ -73,7 +76,7 @@ impl ElasticScene {
              folder: &str,
              change: &dyn Fn(&mut ContactParameters, &mut FrictionParameters)| {
                 let mut scene = self.with_friction(&format!("elastic-friction-{folder}"), change);
-                scene.cuts = Cuts::Argmax;
+                scene.cuts = Cuts::default();
                 variants.push(Variant {
                     name,
                     purpose: Purpose::Friction,
@@ -119,7 +122,7 @@ impl ElasticScene {
         let mut scene = Self {
             folder: "elastic-last".to_owned(),
             twists: vec![-2.0, -1.0, 0.0, 1.0, 2.0],
-            cuts: Cuts::Argmax,
+            cuts: Cuts::default(),
             ..self.clone()
         };
         scene.discharge.until_released = LAST_SHARE;
@@ -128,6 +131,19 @@ impl ElasticScene {
         Variant {
             name: "followed to 99.999 %".to_owned(),
             purpose: Purpose::End,
+            scene,
+        }
+    }
+
+    /// Untwisted knots cut at the largest of each criterion, and followed no further than their t99.
+    fn breaking(&self) -> Variant {
+        let mut scene = self.untwisted("elastic-breaking");
+        scene.cuts = Cuts::Criteria;
+        scene.discharge.until_released = 0.99;
+        scene.timeline.closures = 0;
+        Variant {
+            name: "cut where each criterion is largest".to_owned(),
+            purpose: Purpose::Breaking,
             scene,
         }
     }
@@ -219,11 +235,22 @@ mod tests {
         );
         let published = ElasticScene::published(Preset::Standard);
         for scene in &study {
-            assert_eq!(scene.cuts, Cuts::Argmax);
+            assert_eq!(scene.cuts, Cuts::default());
             assert_eq!(scene.twists, [0.0]);
             let mut rod = scene.rod.clone();
             (rod.contact, rod.friction) = (published.rod.contact, published.rod.friction);
             assert_eq!(rod, published.rod);
+        }
+    }
+
+    #[test]
+    fn every_criterion_is_tried_on_the_untwisted_knots() {
+        for preset in [Preset::Draft, Preset::Standard, Preset::Paper] {
+            let breaking = of(preset, Purpose::Breaking);
+            assert_eq!(breaking.len(), 1);
+            assert_eq!(breaking[0].cuts, Cuts::Criteria);
+            assert_eq!(breaking[0].twists, [0.0]);
+            assert_eq!(breaking[0].rod, ElasticScene::published(preset).rod);
         }
     }
 

@@ -100,6 +100,15 @@ pub trait Experiment: Sync {
         place: &Place<'_>,
     ) -> Result<Option<Outcome<Self::Row>>, LabError>;
 
+    /// Writes further tables of all rows beside `sweep.csv`, in the folder of the scene, and takes away those of an earlier run that are
+    /// asked for no more.
+    ///
+    /// # Errors
+    /// Files that cannot be written.
+    fn write_beside(&self, _folder: &Path, _rows: &[Self::Row]) -> Result<(), LabError> {
+        Ok(())
+    }
+
     /// The line above the rows of the printed table.
     fn header(&self) -> String;
 

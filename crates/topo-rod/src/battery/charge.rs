@@ -5,10 +5,11 @@ use serde::{Deserialize, Serialize};
 use topo_core::{Phase, Schedule, StopReason, positive};
 
 use super::RodBattery;
+use super::cut::{CutCandidate, candidates_of};
 use super::hooks::RunHooks;
 use super::phase::{Course, Finished, RodPhaseRun};
 use super::record::{PhaseReport, Recorder, RunRecord, Scales};
-use crate::{RodEnds, RodError, RodState};
+use crate::{Breaking, Broken, RodEnds, RodError, RodState};
 
 /// How long a rod is charged and how often it is sampled.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -22,6 +23,9 @@ pub struct ChargeSettings {
     pub first_output: f64,
     /// Output times per decade.
     pub outputs_per_decade: f64,
+    /// Whether the fibre breaks by itself, which ends the charge; `None`: nothing is held against a threshold.
+    #[serde(rename = "break", skip_serializing_if = "Option::is_none")]
+    pub breaking: Option<Breaking>,
 }
 
 impl Default for ChargeSettings {
@@ -30,6 +34,7 @@ impl Default for ChargeSettings {
             duration: 2.0,
             first_output: 1e-2,
             outputs_per_decade: 8.0,
+            breaking: None,
         }
     }
 }
@@ -43,6 +48,7 @@ impl ChargeSettings {
         positive("charge.duration", self.duration)?;
         positive("charge.first_output", self.first_output)?;
         positive("charge.outputs_per_decade", self.outputs_per_decade)?;
+        self.breaking.map(Breaking::checked).transpose()?;
         Ok(self)
     }
 }
@@ -54,12 +60,14 @@ pub struct ChargedRod {
     state: RodState,
     density: Vec<f64>,
     record: RunRecord,
+    broken: Option<Broken>,
 }
 
 impl RodBattery {
     /// Relaxes the twisted closed rod.
     ///
-    /// A run that cannot continue returns what it has; its report gives the reason.
+    /// A run that cannot continue returns what it has; its report gives the reason. One that
+    /// [breaks](ChargeSettings::breaking) ends with the step after which the threshold is exceeded.
     ///
     /// # Errors
     /// A setting out of range, a start curve that has no finite energy, or a checkpoint that cannot be used.
@@ -84,6 +92,7 @@ impl RodBattery {
             until: settings.duration * scales.time,
             opened: None,
             release: None,
+            breaking: settings.breaking,
         };
         let system = (model, state);
         let mut run = RodPhaseRun::begin(self, course, system, recorder, settings, hooks)?;
@@ -92,12 +101,25 @@ impl RodBattery {
             mut record, state, ..
         } = run.finish(stop, hooks)?;
         self.check_links(&mut record.report);
+        let breaking = settings.breaking;
+        let site = breaking.and_then(|breaking| self.broken_at(breaking, &state));
         Ok(ChargedRod {
             battery: self.clone(),
             density: self.energy_density(&state),
             state,
+            broken: site.map(|site| Broken {
+                time: record.report.time,
+                site,
+            }),
             record,
         })
+    }
+
+    /// The closed site at which `state` has exceeded what the fibre bears, if it has.
+    pub(super) fn broken_at(&self, breaking: Breaking, state: &RodState) -> Option<CutCandidate> {
+        let measure = state.smoothed(&self.measure(breaking.criterion, state));
+        let largest = candidates_of(state, &measure, 0.0).into_iter().next()?;
+        (largest.density > breaking.threshold).then_some(largest)
     }
 
     /// Fails a phase in which a linking number has drifted: Tw + Wr of a closed component, or that of two of them.
@@ -134,6 +156,14 @@ impl ChargedRod {
     /// Elastic energy density at each vertex, per area, in E_b.
     pub fn density(&self) -> &[f64] {
         &self.density
+    }
+
+    /// Where and when it broke by itself; nothing where no threshold was named, or none exceeded.
+    ///
+    /// # Validation
+    /// `val_a_swelling_ring_breaks_when_its_tension_passes_the_threshold`
+    pub fn broken(&self) -> Option<Broken> {
+        self.broken
     }
 
     /// How it was charged.

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::{ChargedRod, RodError, RodState};
+use crate::{ChargedRod, Criterion, RodError, RodState};
 
 /// How the site of a cut is chosen.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -11,6 +11,8 @@ pub enum CutSite {
     /// The vertex of largest elastic energy density, smoothed over π h.
     #[default]
     MaximumEnergyDensity,
+    /// The vertex at which the measure of a criterion, smoothed over π h, is largest.
+    Maximum(Criterion),
     /// The vertex nearest to a given s/L in [0, 1); of a link, on its first component.
     At(f64),
     /// The vertex nearest to a given s/L in [0, 1) of a component of a link.
@@ -22,7 +24,7 @@ pub enum CutSite {
     },
 }
 
-/// A local maximum of the smoothed energy density.
+/// A local maximum of the smoothed energy density, or of the measure of another criterion.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct CutCandidate {
     /// Vertex to cut.
@@ -32,7 +34,7 @@ pub struct CutCandidate {
     /// Number of its component, from 0.
     #[serde(default, skip_serializing_if = "is_first")]
     pub component: usize,
-    /// Smoothed density per area, in E_b.
+    /// Smoothed density per area, in E_b, or measure of the criterion in its [unit](Criterion::unit).
     pub density: f64,
 }
 
@@ -72,7 +74,7 @@ pub fn cut_candidates(smoothed: &[f64], rest_length: f64, share: f64) -> Vec<Cut
 }
 
 /// As [`cut_candidates`], of all closed components of `state` together, with its smoothed density.
-fn candidates_of(state: &RodState, smoothed: &[f64], share: f64) -> Vec<CutCandidate> {
+pub(super) fn candidates_of(state: &RodState, smoothed: &[f64], share: f64) -> Vec<CutCandidate> {
     let mut all: Vec<CutCandidate> = Vec::new();
     for (component, chain) in state.components().iter().enumerate() {
         if chain.is_closed() {
@@ -135,6 +137,17 @@ impl ChargedRod {
         candidates_of(state, &state.smoothed(self.density()), share)
     }
 
+    /// Sites within `share` of the largest smoothed measure of a criterion, largest first; those of [`Criterion::Energy`] are the
+    /// [`cut_candidates`](Self::cut_candidates).
+    pub fn cut_candidates_by(&self, criterion: Criterion, share: f64) -> Vec<CutCandidate> {
+        if criterion == Criterion::Energy {
+            return self.cut_candidates(share);
+        }
+        let state = self.state();
+        let measure = self.battery().measure(criterion, state);
+        candidates_of(state, &state.smoothed(&measure), share)
+    }
+
     /// Cuts the rod, or one component of a link.
     ///
     /// # Errors
@@ -143,6 +156,10 @@ impl ChargedRod {
         match site {
             CutSite::MaximumEnergyDensity => {
                 let found = self.cut_candidates(0.0)[0];
+                CutRod::new(self, found.component, found.at)
+            }
+            CutSite::Maximum(criterion) => {
+                let found = self.cut_candidates_by(criterion, 0.0)[0];
                 CutRod::new(self, found.component, found.at)
             }
             CutSite::At(at) => CutRod::new(self, 0, at),

@@ -125,6 +125,7 @@ impl CutRod {
             until: settings.longest * scales.time,
             opened: Some(self.component),
             release: Some([after_cut, (1.0 - settings.until_released) * after_cut]),
+            breaking: None,
         };
         let of = (settings, before);
         let system = (model, state);

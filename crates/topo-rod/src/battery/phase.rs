@@ -9,7 +9,7 @@ use super::record::{Recorder, RunRecord, Seen};
 use super::simulation::{RodSimulation, control_of};
 use super::tips::tips_have_parted;
 use crate::model::ModelMemory;
-use crate::{RodError, RodModel, RodState};
+use crate::{Breaking, RodError, RodModel, RodState};
 
 const SCHEMA: &str = "rod-phase/1";
 
@@ -23,11 +23,15 @@ pub(super) struct Course {
     pub opened: Option<usize>,
     /// Elastic energy just after a cut and at which its discharge is over, per area.
     pub release: Option<[f64; 2]>,
+    /// What the rod bears; the phase is over when that is exceeded.
+    pub breaking: Option<Breaking>,
 }
 
 /// A phase in progress.
 pub(super) struct RodPhaseRun {
     course: Course,
+    /// The battery of a rod that may break.
+    bearing: Option<Box<RodBattery>>,
     simulation: RodSimulation,
     recorder: Recorder,
     /// Time at which the tips were so far apart that they count as separate strands, in η/E_b.
@@ -96,6 +100,7 @@ impl RodPhaseRun {
         }
         Ok(Self {
             course,
+            bearing: course.breaking.map(|_| Box::new(battery.clone())),
             simulation,
             recorder,
             parted,
@@ -137,8 +142,10 @@ impl RodPhaseRun {
             until,
             release,
             opened,
+            breaking,
             ..
         } = self.course;
+        let bearing = self.bearing.as_deref().zip(breaking);
         let goal = release.map(|[_, goal]| goal);
         let recorder = &mut self.recorder;
         let (parts, diameter) = (recorder.parts.clone(), recorder.tube.contact_diameter);
@@ -148,6 +155,9 @@ impl RodPhaseRun {
         let mut over = |s: &Sample<'_, RodState>| {
             if goal.is_some_and(|goal| parts.elastic_of(s.ledger) <= goal) {
                 return Some("released".to_owned());
+            }
+            if bearing.is_some_and(|(rod, bears)| rod.broken_at(bears, s.state).is_some()) {
+                return Some("broken".to_owned());
             }
             parts_now = is_joined
                 && opened.is_some_and(|c| {

@@ -10,10 +10,10 @@ use crate::contact::ContactPairs;
 use crate::energy::{Bend, Stretch, Twist, terms_of};
 use crate::{Geometry, RodParameters, RodState};
 
-const N: usize = 400;
+pub(crate) const N: usize = 400;
 
 /// A rod of length `rest` on a ring of N edges and radius 3, or on a helix of pitch 2π q about the same axis.
-fn coil(rest: f64, pitch: Option<f64>, twist: f64) -> RodState {
+pub(crate) fn coil(rest: f64, pitch: Option<f64>, twist: f64) -> RodState {
     let turn = |k: usize| TAU * k as f64 / N as f64;
     let point = |u: f64| Vector3::new(3.0 * u.cos(), 3.0 * u.sin(), pitch.unwrap_or(0.0) * u);
     let vertices = (0..N + usize::from(pitch.is_some())).map(|k| point(turn(k)));

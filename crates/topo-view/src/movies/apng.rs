@@ -246,7 +246,7 @@ mod tests {
                     Tube::new(&view, &values, true, 1.0, &Scale::viridis(0.0, 99.0)).unwrap();
                 let mut canvas = Canvas::new(320.0, 240.0, 1.0);
                 canvas
-                    .tube([0.0; 2], [320.0, 240.0], [0.0; 2], 6.0, &tube)
+                    .tubes([0.0; 2], [320.0, 240.0], [0.0; 2], 6.0, &[tube])
                     .unwrap();
                 canvas.text(8.0, 20.0, &format!("*t* = {k}"), Style::default());
                 let pixels = canvas.pixels().unwrap();

@@ -170,7 +170,7 @@ impl Actor {
         let middle = [(x0 + x1) / 2.0, (y0 + y1) / 2.0];
         let [left, top, width, height] = ROOM;
         let place = [corner[0] + left, corner[1] + top];
-        canvas.tube(place, [width, height], middle, unit, &tube)?;
+        canvas.tubes(place, [width, height], middle, unit, &[tube])?;
         let style = Style::default().bold().halo().size(16.0);
         canvas.text(corner[0] + 16.0, corner[1] + 18.0, &self.label, style);
         let style = Style::default().halo().size(13.0);

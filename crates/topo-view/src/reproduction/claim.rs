@@ -5,8 +5,9 @@ use topo_analysis::Warnings;
 
 use serde::Serialize;
 use topo_lab::Variant;
+use topo_rod::Criterion;
 
-use crate::data::{NematicSweep, Sweep};
+use crate::data::{Cut, NematicSweep, Sweep};
 use crate::error::ViewError;
 
 /// How far a claim is borne out.
@@ -116,6 +117,8 @@ pub(crate) struct Tables {
     pub(crate) elastic: Option<Sweep>,
     /// Untwisted states under other choices of friction and reading.
     pub(crate) choices: Vec<Side>,
+    /// Untwisted states cut where each criterion of breaking is largest.
+    pub(crate) criteria: Vec<ByCriterion>,
     /// Discharges followed until the slowest mode is left.
     pub(crate) last: Option<Side>,
     pub(crate) nematic: Option<NematicSweep>,
@@ -140,6 +143,31 @@ impl Side {
             folder,
             sweep,
         }))
+    }
+}
+
+/// Untwisted states, each cut once: where the measure of a criterion is largest.
+pub(crate) struct ByCriterion {
+    pub(crate) criterion: Criterion,
+    pub(crate) sweep: Sweep,
+}
+
+impl ByCriterion {
+    /// The cuts of a variant by the criteria that chose them; none where it was not run.
+    pub(crate) fn read(results: &Path, variant: Variant) -> Result<Vec<Self>, ViewError> {
+        let side = Side::read(results, variant)?;
+        Ok(side.map_or_else(Vec::new, |side| Self::of(&side.sweep)))
+    }
+
+    /// The cuts of a sweep by the criteria that chose them.
+    pub(crate) fn of(sweep: &Sweep) -> Vec<Self> {
+        let of = |criterion: Criterion| {
+            let chose = |cut: &&Cut| cut.cut_by.split(';').any(|by| by == criterion.name());
+            let cuts = sweep.cases.iter().flat_map(|case| &case.cuts).filter(chose);
+            let sweep = Sweep::of_rows(cuts.cloned().collect())?;
+            Some(Self { criterion, sweep })
+        };
+        Criterion::ALL.into_iter().filter_map(of).collect()
     }
 }
 

@@ -14,11 +14,12 @@ mod times;
 use super::claim::{Claim, Other};
 use discharge::{fast_at_high_twist, knots_washed_out, slow_at_low_twist};
 use rows::flags;
+pub(crate) use slow::{SLOW, words};
 use slow::{robust, slow_pair};
 use times::{Site, tied};
 
 const BRANCH: &str = "the branch that a start shape settles in (θ′h near ±1)";
-const CUT: &str = "the cut site, the range of friction, how L/h is read";
+const CUT: &str = "what “maximum stress” means, which of several near-tied sites is cut, the range of friction, how L/h is read";
 /// The other experiment: all near-tied sites are cut, one rod each.
 const TIES: &str = "By the mean over near-tied cuts";
 
@@ -124,20 +125,20 @@ pub const CLAIMS: [Claim; 15] = [
         published: "Fig. 3c",
         figure: "elastic-discharge",
         depends: CUT,
-        rule: "one cut, at the largest energy density, as published: t99 of both is more than 1.5 times the median of the knots; in part if that of one is, or if t90 of both is",
+        rule: "one cut at the point of maximum stress, as published: t99 of both is more than 1.5 times the median of the knots whether that is the largest energy density, curvature, tension or von Mises stress; in part if by some of these only, if that of one is, or if t90 of both is",
         look: |t| slow_pair(t, Site::Largest),
         other: Some(Other {
             reading: TIES,
             look: |t| tied(t, slow_pair),
         }),
-        doubt: flags,
+        doubt: slow::flags_of_criteria,
     },
     Claim {
         text: "Some knots are superslow for a reason of topology.",
         published: "Fig. 3d, e",
         figure: "elastic-discharge",
-        depends: "the cut site, the range of friction, how L/h is read (“hard” stretches rods of seven crossings, and that energy goes at once; “own-length” has longer rods for longer knots, which take longer in T₀ to straighten)",
-        rule: "one cut, at the largest energy density: t99 of some untwisted knot is more than 1.5 times the median of the knots by default and under every other choice of friction and reading; in part if by default only",
+        depends: "what “maximum stress” means, which of several near-tied sites is cut, the range of friction, how L/h is read (“hard” stretches rods of seven crossings, and that energy goes at once; “own-length” has longer rods for longer knots, which take longer in T₀ to straighten)",
+        rule: "one cut, at the largest energy density: t99 of some untwisted knot is more than 1.5 times the median of the knots by default, under every other choice of friction and reading, and cut at the largest curvature, tension or von Mises stress; in part if by default only",
         look: |t| robust(t, Site::Largest),
         other: Some(Other {
             reading: TIES,

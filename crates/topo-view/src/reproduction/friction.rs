@@ -46,7 +46,8 @@ pub fn study(results: &Path) -> Result<Vec<Row>, ViewError> {
     let mut is_run = false;
     for variant in published.variants() {
         let same_reading = variant.scene.rod.reading == published.rod.reading;
-        if variant.purpose == Purpose::End || !same_reading {
+        let is_of_friction = matches!(variant.purpose, Purpose::Choice | Purpose::Friction);
+        if !is_of_friction || !same_reading {
             continue;
         }
         let Variant { scene, purpose, .. } = variant.clone();

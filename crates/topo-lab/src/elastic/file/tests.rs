@@ -160,7 +160,9 @@ fn what_varies_lies_in_the_case_and_its_json_is_what_it_was() {
     );
     let plain = serde_json::to_string(&parse(KNOT).unwrap()).unwrap();
     assert!(
-        !plain.contains("axes") && !plain.contains("own_knots"),
+        ["axes", "own_knots", "break", "\"si\""]
+            .iter()
+            .all(|absent| !plain.contains(absent)),
         "{plain}"
     );
 }
@@ -180,6 +182,83 @@ fn cuts_may_be_given() {
             .unwrap_err()
             .contains("50 edges")
     );
+}
+
+#[test]
+fn cuts_may_be_those_of_a_criterion() {
+    use topo_rod::Criterion;
+    for (text, cuts) in [
+        ("energy", Cuts::default()),
+        ("curvature", Cuts::Largest(Criterion::Curvature)),
+        ("von-mises", Cuts::Largest(Criterion::VonMises)),
+        ("near-ties:tension", Cuts::NearTies(Criterion::Tension)),
+        ("criteria", Cuts::Criteria),
+    ] {
+        let scene = parse(&format!("{KNOT}[discharge]\ncuts = \"{text}\"")).unwrap();
+        assert_eq!(scene.cuts, cuts);
+        assert_eq!(parse(&scene.text()).unwrap(), scene);
+    }
+}
+
+#[test]
+fn a_fibre_may_break_by_itself_and_say_what_it_is_made_of() {
+    let breaks = "[charge.break]\ncriterion = \"von-mises\"\nthreshold = 0.8\n";
+    let scene = parse(&format!("{KNOT}{breaks}")).unwrap();
+    assert_eq!(scene.charge.breaking.unwrap().threshold, 0.8);
+    assert!(!scene.text().contains("cuts"), "{}", scene.text());
+    assert_eq!(parse(&scene.text()).unwrap(), scene);
+    let refused = scene.with_cuts(Cuts::All(3)).unwrap_err();
+    assert!(refused.contains("[charge.break]"), "{refused}");
+    let silicone = "[si]\nradius = 1e-3\nbending_modulus = 1e7\nviscosity = 1e4\n";
+    let scene = parse(&format!("{KNOT}{silicone}")).unwrap();
+    assert_eq!(scene.si.unwrap().density, None);
+    assert_eq!(parse(&scene.text()).unwrap(), scene);
+    // units change no case
+    let table = KnotTable::builtin();
+    let plain = parse(KNOT).unwrap();
+    let case = &plain.cases(&table).unwrap()[0];
+    assert_eq!(scene.case_name(case), plain.case_name(case));
+    assert_refused(&[
+        (
+            "[charge.break]\ncriterion = \"tension\"\nthreshold = 1\n[discharge]\ncuts = \"near-ties\"",
+            ["line 7: discharge.cuts = \"near-ties\"", "leave out one"],
+        ),
+        (
+            "[charge.break]\ncriterion = \"tension\"\nthreshold = -1",
+            ["line 5: charge.break.threshold = -1", "above zero"],
+        ),
+        (
+            "[charge.break]\ncriterion = \"stress\"\nthreshold = 1",
+            [
+                "line 4: charge.break.criterion = \"stress\"",
+                "\"von-mises\"",
+            ],
+        ),
+        (
+            "[charge.break]\ncriterion = \"tension\"",
+            ["charge.break", "threshold"],
+        ),
+        (
+            "[si]\nradius = 0\nbending_modulus = 1e7\nviscosity = 1e4",
+            ["line 4: si.radius = 0", "above zero"],
+        ),
+        (
+            "[si]\nradius = 1e-3\nbending_modulus = 1e7\nviscosity = inf",
+            ["line 6: si.viscosity = inf", "above zero"],
+        ),
+        (
+            "[si]\nradius = 1e-3\nbending_modulus = 1e7\nviscosity = 1e4\ndensity = -1",
+            ["line 7: si.density = -1", "above zero"],
+        ),
+        (
+            "[si]\nradius = 1e-3\nbending_modulus = 1e7",
+            ["si", "viscosity"],
+        ),
+        (
+            "[discharge]\ncuts = \"stress\"",
+            ["line 4: discharge.cuts = \"stress\"", "\"von-mises\""],
+        ),
+    ]);
 }
 
 #[test]

@@ -10,7 +10,7 @@ use super::CLAIMS;
 use crate::data::{Cut, KNOTS, Sweep};
 use crate::reproduction::Finding;
 use crate::reproduction::claim::Verdict::{Confirmed, NotConfirmed, NotJudged, Partly};
-use crate::reproduction::claim::{Side, Tables, Verdict};
+use crate::reproduction::claim::{ByCriterion, Side, Tables, Verdict};
 use std::path::Path;
 
 /// The seventeen published twists.
@@ -44,6 +44,7 @@ fn tables(rows: Vec<Cut>) -> Tables {
         results: Path::new("nowhere").to_owned(),
         elastic: Sweep::of_rows(rows),
         choices: Vec::new(),
+        criteria: Vec::new(),
         last: None,
         nematic: None,
     }

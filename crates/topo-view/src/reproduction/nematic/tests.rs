@@ -50,6 +50,7 @@ fn tables(folder: &Path, rows: Vec<NematicRow>, flowing: Vec<NematicRow>) -> Tab
         results: folder.to_owned(),
         elastic: None,
         choices: Vec::new(),
+        criteria: Vec::new(),
         last: None,
         nematic: Some(NematicSweep {
             folder: folder.to_owned(),

@@ -51,6 +51,60 @@ fn claim_10_is_judged_by_the_cut_at_the_largest_density() {
     assert!(once.other_reading.is_none());
 }
 
+/// Cuts of the untwisted knots by criterion, with the given t99 over the median.
+fn cut_by(by: &str, list: &[(&str, f64)]) -> Vec<Cut> {
+    let mut rows = factors(list);
+    for row in &mut rows {
+        row.cut_by = by.to_owned();
+    }
+    rows
+}
+
+#[test]
+fn claim_10_looks_at_every_reading_of_maximum_stress() {
+    let pair: &[(&str, f64)] = &[("3_1", 1.6), ("7_4", 2.2)];
+    let judged = |curvature: &[(&str, f64)], others: &[(&str, f64)]| {
+        let mut made = tables(factors(pair));
+        let rows = [
+            cut_by("energy;von-mises", others),
+            cut_by("curvature", curvature),
+            cut_by("tension", pair),
+        ];
+        made.criteria = ByCriterion::of(&Sweep::of_rows(rows.concat()).unwrap());
+        made
+    };
+    let agreeing = judged(pair, pair);
+    assert_eq!(agreeing.criteria.len(), 4);
+    assert_eq!(verdict(10, &agreeing), Confirmed);
+    let apart = judged(&[("7_1", 1.7)], pair);
+    assert_eq!(verdict(10, &apart), Partly);
+    let said = finding(10, &apart).found;
+    assert!(
+        said.contains("largest curvature: 3₁ 1 and 7₄ 1 times, slow: 7₁ 1.7"),
+        "{said}"
+    );
+    assert!(said.contains("von Mises stress: 3₁ 1.6"), "{said}");
+    // slow by none of the readings
+    let mut none = judged(&[], &[]);
+    none.elastic = Sweep::of_rows(factors(&[]));
+    none.criteria
+        .retain(|c| c.criterion != topo_rod::Criterion::Tension);
+    assert_eq!(verdict(10, &none), NotConfirmed);
+    // and to claim 11 each reading is one choice more
+    let choice = || side("so", factors(pair));
+    let mut made = judged(pair, pair);
+    made.choices.push(choice());
+    assert_eq!(verdict(11, &made), Confirmed);
+    let mut made = judged(&[], pair);
+    made.choices.push(choice());
+    assert_eq!(verdict(11, &made), Partly);
+    let said = finding(11, &made).found;
+    assert!(
+        said.contains("not under cut at the largest curvature"),
+        "{said}"
+    );
+}
+
 #[test]
 fn claim_11_needs_a_knot_that_is_slow_under_every_choice() {
     let slow = || factors(&[("7_4", 2.2), ("7_1", 1.7)]);
