@@ -77,3 +77,46 @@ pub fn mirrored(curve: &Polyline) -> Polyline {
     let flipped = curve.vertices().iter().map(|v| V::new(v.x, v.y, -v.z));
     polyline(flipped.collect(), curve.is_closed())
 }
+
+/// A loose overhand knot of length 1: a trefoil on a torus, opened where it is farthest out, with straight tails that spread from there. Its
+/// ends lie apart along x, the first one at the lower end, and outside of the knot.
+///
+/// # Panics
+/// When it cannot be sampled by so few edges.
+pub fn overhand(n_edges: usize, tail: f64) -> Polyline {
+    let cut = 0.3;
+    let knotted = |u: f64| {
+        let r = 2.0 + (3.0 * u).cos();
+        V::new(
+            r * (2.0 * u).cos(),
+            r * (2.0 * u).sin(),
+            -1.2 * (3.0 * u).sin(),
+        )
+    };
+    let at = |k: usize| knotted(cut + (TAU - 2.0 * cut) * k as f64 / 300.0);
+    let out = |from: V, side: f64, k: usize| {
+        from + V::new(1.0, side, -0.6 * side).normalize() * (tail * k as f64 / 100.0)
+    };
+    let vertices = (1..=100).rev().map(|k| out(at(0), 1.0, k));
+    let vertices = vertices.chain((0..=300).map(at));
+    let vertices = vertices.chain((1..=100).map(|k| out(at(300), -1.0, k)));
+    let corners = polyline(vertices.collect(), false).resampled(400);
+    let round = corners
+        .and_then(|curve| curve.smoothed(100))
+        .expect("a test's own curve");
+    // its ends along x
+    let (first, last) = (round.vertices()[0], round.vertices()[400]);
+    let along = (last - first).normalize();
+    let aside = (V::x() - along * along.x).normalize();
+    let up = along.cross(&aside);
+    let turned = round
+        .vertices()
+        .iter()
+        .map(|v| V::new(v.dot(&along), v.dot(&aside), v.dot(&up)));
+    let curve = polyline(turned.collect(), false)
+        .resampled(n_edges)
+        .expect("a test's own edges");
+    curve
+        .scaled(1.0 / curve.length())
+        .expect("a test's own scale")
+}

@@ -19,7 +19,9 @@ use topo_knots::{
     CurveFile, CurveFormat, FrameChoice, Invariants, KnotEntry, KnotError, TightKnot, closed_braid,
     curve_text, n_components, parse_braid, parse_components,
 };
-use topo_lab::{Battery, Colloid, Elastic, ElasticScene, FieldSnapshot, NematicScene, parse_scene};
+use topo_lab::{
+    Battery, Colloid, Elastic, ElasticScene, FieldSnapshot, NematicScene, RestProfile, parse_scene,
+};
 
 pub use batteries::{nematic_checkpoint, nematic_payloads, rod_checkpoint, rod_payloads};
 
@@ -130,12 +132,17 @@ pub fn braid(data: &[u8]) {
     assert_eq!(invariants(&turned), own);
 }
 
-/// Curves and snapshots as comma-separated values.
+/// Curves, snapshots and natural shapes as comma-separated values.
 pub fn csv(data: &[u8]) {
     curve(data, CurveFormat::Csv);
     let Ok(text) = std::str::from_utf8(data) else {
         return;
     };
+    if let Ok(profile) = RestProfile::parse(text, ["twist"]) {
+        let [first, middle, last] = [-1.0, 0.3, 2.0].map(|s| profile.at(s)[0]);
+        let miss = (first - last).abs();
+        assert!(middle.is_finite() && miss <= 1e-9 * first.abs().max(last.abs()).max(1.0));
+    }
     if let Ok(snapshot) = Snapshot::parse(named(), text) {
         // A header may repeat or leave out names; such a table is read but cannot be written.
         if let Ok(written) = snapshot.text(named()) {

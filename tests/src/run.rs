@@ -126,6 +126,22 @@ pub fn run_to(simulation: &mut RodSimulation, until: f64) {
     assert_eq!(stop, StopReason::ReachedTime, "at {}", simulation.time());
 }
 
+/// As [`run_to`], past all times at which the grips of the rod change.
+///
+/// # Panics
+/// When it stops before.
+pub fn run_grips_to(simulation: &mut RodSimulation, until: f64) {
+    loop {
+        let change = simulation.model().next_change().filter(|t| *t < until);
+        run_to(simulation, change.unwrap_or(until));
+        if change.is_none() {
+            return;
+        }
+        let time = simulation.time();
+        simulation.modify(|model, state| model.change_grips(time, state));
+    }
+}
+
 /// Stored energy of one term, per area.
 pub fn stored(simulation: &RodSimulation, term: &str) -> f64 {
     simulation

@@ -7,7 +7,7 @@ use topo_nematic::{
     SwitchSettings,
 };
 use topo_rod::{
-    Accuracy, ChargeSettings, ContactParameters, CutSite, Discharge, DischargeSettings,
+    Accuracy, ChargeSettings, ContactParameters, CutSite, Discharge, DischargeSettings, EndLoad,
     FrictionParameters, Guards, PhaseReport, RodBattery, RodParameters,
 };
 use topo_tests::curves;
@@ -114,6 +114,7 @@ fn law_absent_terms_of_a_rod_cost_nothing() {
         assert_eq!(calls, [0; 5]);
         let bytes = [work.contact_bytes, work.friction_bytes, work.twist_bytes];
         assert_eq!(bytes, [0; 3]);
+        assert_eq!((work.n_load_evaluations, work.load_bytes), (0, 0));
     }
     // Each counter tells a term that is there.
     let everything = RodParameters {
@@ -151,6 +152,38 @@ fn law_absent_terms_of_a_nematic_cost_nothing() {
     assert!(full.bytes.second > 0 && full.n_second_passes > 10);
     // The rest takes what it took.
     assert_eq!(full.bytes.geometry, plain.bytes.geometry);
+}
+
+/// A load is evaluated where there is one; one too weak to move anything leaves what the rod does, to rounding.
+#[test]
+fn law_a_load_is_there_where_it_is_named() {
+    let battery = RodBattery::new(&rod(), &Accuracy::default(), Guards::default(), &circle());
+    let none = &mut topo_core::RunHooks::default();
+    let charged = battery.unwrap().charge(&ChargeSettings::default(), none);
+    let cut = charged.unwrap().cut(CutSite::At(0.1)).unwrap();
+    let mut run = |load| {
+        let settings = DischargeSettings {
+            load,
+            ..DischargeSettings::default()
+        };
+        cut.discharge(&settings, none).unwrap()
+    };
+    let weak = EndLoad {
+        dashpot: 1e-14,
+        ..EndLoad::default()
+    };
+    let (without, with) = (run(None), run(Some(weak)));
+    let [absent, present] = [&without, &with].map(|d| d.record.report.own.work);
+    assert_eq!((absent.n_load_evaluations, absent.load_bytes), (0, 0));
+    assert!(present.n_load_evaluations > 10 && present.load_bytes > 0);
+    assert!(without.record.report.own.load.is_none());
+    assert!(without.record.samples.iter().all(|s| s.load_work.is_none()));
+    assert!(with.record.report.own.load.unwrap().work < 1e-9);
+    let (a, b) = (&with.record.curve, &without.record.curve);
+    assert_eq!(a.len(), b.len(), "steps");
+    for k in 0..a.len() {
+        assert!((a.stored_total(k) - b.stored_total(k)).abs() <= 1e-9 * b.stored_total(0));
+    }
 }
 
 /// Friction of ratio zero is no friction, to the bit.

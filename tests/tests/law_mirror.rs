@@ -6,7 +6,10 @@ use topo_analysis::{SweepRow, read_table};
 use topo_core::{Polyline, RunHooks};
 use topo_knots::{KnotTable, closed_braid};
 use topo_lab::{ElasticScene, SweepSettings, run_sweep};
-use topo_rod::{Accuracy, CutSite, Guards, RodBattery, RodError, RodParameters};
+use topo_rod::{
+    Accuracy, ChargeSettings, CutSite, DischargeSettings, Guards, RodBattery, RodError,
+    RodParameters,
+};
 use topo_tests::curves::{closed, ring, trefoil};
 
 #[derive(serde::Deserialize)]
@@ -68,6 +71,79 @@ fn table_with_own(folder: &Path) -> KnotTable {
     let rows = format!("x,y,z\n{}", rows.collect::<String>());
     std::fs::write(folder.join("tre.csv"), rows).unwrap();
     KnotTable::builtin().with_folder(folder).unwrap()
+}
+
+/// The natural shape at s/L of a rod and, with hand −1, of its mirror image.
+fn natural(s: f64, hand: f64) -> ([f64; 2], f64) {
+    let angle = std::f64::consts::TAU * s;
+    let curvature = [0.08 + 0.05 * angle.sin(), hand * 0.07 * angle.cos()];
+    (curvature, hand * (0.2 + 0.1 * angle.cos()))
+}
+
+fn shaped(curve: &Polyline, hand: f64) -> RodBattery {
+    let parameters = RodParameters {
+        n_edges: 60,
+        twist: Some(hand),
+        ..RodParameters::default()
+    };
+    let (accuracy, guards) = (Accuracy::default(), Guards::default());
+    let battery = RodBattery::new(&parameters, &accuracy, guards, curve).unwrap();
+    let length = battery.tube().length;
+    let at = |s: f64| natural(s / length, hand);
+    battery.with_rest(|_, s| at(s).0, |_, s| at(s).1).unwrap()
+}
+
+/// Twisted fibres that are curved and twisted at rest: (κ_1, −κ_2) and −θ' along the mirrored curve at the opposite twist give the mirror
+/// image of charge and discharge, to the bit. The same fibre along the mirrored curve is that of the mirrored shape at the opposite twist.
+#[test]
+fn law_fibres_with_a_natural_shape_are_mirrored_with_it() {
+    let curve = trefoil(60, 2.0, 1.0);
+    let (ours, image) = (shaped(&curve, 1.0), shaped(&curve.mirrored(), -1.0));
+    let rest = ours.start().rest().unwrap().mirrored();
+    assert_eq!(image.start().rest(), Some(&rest));
+    let same = shaped(&curve, -1.0).mirrored().unwrap();
+    let start = |battery: &RodBattery| {
+        let state = battery.start();
+        let twists = state.twists().to_vec();
+        (state.vertices().to_vec(), twists, state.rest().cloned())
+    };
+    assert_eq!(start(&same), start(&image));
+    let run = |battery: &RodBattery| {
+        let charge = ChargeSettings {
+            duration: 0.05,
+            ..ChargeSettings::default()
+        };
+        let settings = DischargeSettings {
+            until_released: 0.5,
+            ..DischargeSettings::default()
+        };
+        let none = &mut RunHooks::default();
+        let charged = battery.charge(&charge, none).unwrap();
+        let cut = charged.cut(CutSite::At(0.3)).unwrap();
+        let discharge = cut.discharge(&settings, none).unwrap();
+        let samples = [&charged.record().samples[..], &discharge.record.samples].concat();
+        samples
+            .iter()
+            .map(|s| {
+                (
+                    s.elastic(),
+                    s.state.vertices().to_vec(),
+                    s.state.twists().to_vec(),
+                )
+            })
+            .collect::<Vec<_>>()
+    };
+    let (ours, theirs) = (run(&ours), run(&image));
+    assert_eq!(ours.len(), theirs.len());
+    for ((energy, x, twists), (e, y, turned)) in ours.iter().zip(&theirs) {
+        assert_eq!(energy, e);
+        assert!(
+            x.iter()
+                .zip(y)
+                .all(|(a, b)| (a.x, a.y, a.z) == (b.x, b.y, -b.z))
+        );
+        assert!(twists.iter().zip(turned).all(|(a, b)| *a == -b));
+    }
 }
 
 /// Energies, times, shapes, twists, writhe, knot types and cut sites of 3_1, 4_1, 6_3 and a knot of an own folder, to the bit.

@@ -87,6 +87,41 @@ fn law_a_knot_and_its_curve_give_one_discharge() {
     assert!(of_knot.rows[0].t90.is_some());
 }
 
+/// The scenes of links and natural shapes that come with the project, with fewer edges and one twist: charged, cut, and followed for a
+/// while; what is released is what was stored.
+#[test]
+fn law_example_scenes_of_links_and_natural_shapes_run() {
+    let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes");
+    let out = tempfile::tempdir().unwrap();
+    for (name, components) in [("elastic-hopf", 2), ("elastic-natural-curvature", 1)] {
+        let mut scene = ElasticScene::read(&scenes.join(format!("{name}.toml"))).unwrap();
+        (scene.rod.n_edges, scene.twists) = (48, vec![1.0]);
+        (scene.charge.duration, scene.discharge.longest) = (0.3, 1.0);
+        (scene.tighten.n_variants, scene.tighten.n_kicks) = (0, 0);
+        let settings = SweepSettings {
+            jobs: 1,
+            ..SweepSettings::new(out.path())
+        };
+        let report = run_sweep(&scene, &KnotTable::builtin(), &settings, &|_| {}).unwrap();
+        assert!(report.failed.is_empty(), "{name}: {:?}", report.failed);
+        let row = &report.rows[0];
+        assert_eq!(row.components, components);
+        let case = out.path().join(name).join(&row.case);
+        let run = std::fs::read_to_string(case.join("run.json")).unwrap();
+        let run: serde_json::Value = serde_json::from_str(&run).unwrap();
+        let residual = run["ledger_residual"].as_f64().unwrap();
+        println!(
+            "{name}: {:.3} E_0, energy account open by {residual:.1e}",
+            row.energy
+        );
+        assert!(
+            row.energy > 0.1 && residual < 1e-2,
+            "{name}: {residual:.1e}"
+        );
+        assert_eq!(run["case"]["rest"].is_object(), components == 1);
+    }
+}
+
 /// The shape that the sweep of the knot kept.
 fn tight(folder: &Path) -> TightKnot {
     let mut scene = ElasticScene::parse("[rod]\nknot = \"3_1\"\n", Path::new("s.toml")).unwrap();

@@ -2,8 +2,13 @@
 
 use std::f64::consts::{PI, TAU};
 
+use std::path::Path;
+
 use nalgebra::Vector3;
+use topo_analysis::SweepRow;
 use topo_core::Model;
+use topo_knots::KnotTable;
+use topo_lab::{ElasticScene, SweepSettings, identity, run_sweep};
 use topo_rod::RodState;
 use topo_tests::{curves, run};
 
@@ -116,4 +121,51 @@ fn val_natural_twist_and_curvature_make_a_helix() {
     let (a, b, c): (Vector3<f64>, _, _) = (x[21] - x[20], x[31] - x[30], x[41] - x[40]);
     println!("writhe {}, triple {}", right_handed, a.dot(&b.cross(&c)));
     assert!(a.dot(&b.cross(&c)) > 0.0, "a left-handed helix");
+}
+
+/// Charges the ring of a scene, 50 h of fibre in 80 edges, and cuts it.
+fn ring_of_scene(rest: &str, folder: &Path) -> SweepRow {
+    let text = format!(
+        "[rod]\nknot = \"0_1\"\nimperfection = 0.0\n{rest}\n[charge]\nduration = 0.1\n[discharge]\nlongest = 0.5\nclosures = 0\ncuts = 0.4\n[accuracy]\nedges = 80\n"
+    );
+    let scene = ElasticScene::parse(&text, &folder.join("ring.toml")).unwrap();
+    let settings = SweepSettings {
+        jobs: 1,
+        ..SweepSettings::new(&folder.join(identity(&rest.into())))
+    };
+    let report = run_sweep(&scene, &KnotTable::builtin(), &settings, &|_| {}).unwrap();
+    let case = settings.out.join("ring").join(&report.rows[0].case);
+    let run = std::fs::read_to_string(case.join("run.json")).unwrap();
+    assert_eq!(run.contains("\"rest\""), !rest.is_empty(), "{run}");
+    report.rows[0].clone()
+}
+
+/// A ring of a fibre that is as curved at rest stores nothing, by a number or a file, and keeps its shape when it is cut; that of a
+/// straight fibre stores B L κ²/2 = π/8 (2π/50)² in E_0, and one curved the other way four times that.
+#[test]
+fn val_a_naturally_curved_ring_of_a_scene_stores_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let (n, length) = (80.0, 50.0);
+    let natural = 2.0 * n / length * f64::tan(PI / n);
+    let file =
+        format!("s,curvature_2,curvature_1\n0,0,{natural}\n0.3,0,{natural}\n1,0,{natural}\n");
+    std::fs::write(folder.path().join("ring.csv"), file).unwrap();
+    let row = |rest: &str| ring_of_scene(rest, folder.path());
+    let straight = row("").energy;
+    let by_hand = PI / 8.0 * (TAU / length).powi(2);
+    println!("straight {straight:.4e}, by hand {by_hand:.4e}");
+    assert!(
+        (straight / by_hand - 1.0).abs() < 2e-3,
+        "{straight} {by_hand}"
+    );
+    let number = row(&format!("[rod.rest]\ncurvature = {natural}"));
+    let along = row("[rod.rest]\ncurvature = \"ring.csv\"");
+    for ring in [&number, &along] {
+        println!("curved {:.1e}", ring.energy);
+        assert!(ring.energy < 1e-6 * straight, "{:e}", ring.energy);
+    }
+    assert_eq!(number.energy, along.energy);
+    assert_ne!(number.case, along.case);
+    let other = row(&format!("[rod.rest]\ncurvature = [{}, 0.0]", -natural)).energy;
+    assert!((other / (4.0 * straight) - 1.0).abs() < 2e-3, "{other}");
 }

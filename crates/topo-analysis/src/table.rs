@@ -162,7 +162,7 @@ mod tests {
         let text = std::fs::read_to_string(&path).unwrap();
         assert_eq!(
             text.lines().next().unwrap(),
-            "case,knot,name,components,linking,twist,cut,cut_by,reading,edges,slenderness,length,twist_ratio,stretch_ratio,contact_stiffness,friction_ratio,friction_range,imperfection,seed,tolerance,energy,bend,twist_energy,stretch,energy_other_image,writhe,total_twist,t50,t90,t95,t99,t50_after_cut,t90_after_cut,t95_after_cut,t99_after_cut,t_untie,link_drift,min_distance_over_contact,steps,rejected,cpu_seconds,warnings"
+            "case,knot,name,components,linking,twist,cut,cut_by,reading,edges,slenderness,length,twist_ratio,stretch_ratio,contact_stiffness,friction_ratio,friction_range,load_spring,load_rest_length,load_dashpot,imperfection,seed,tolerance,energy,bend,twist_energy,stretch,energy_other_image,writhe,total_twist,t50,t90,t95,t99,t50_after_cut,t90_after_cut,t95_after_cut,t99_after_cut,t_untie,energy_in,work,heat,residual,peak_power,efficiency,energy_per_mass,link_drift,min_distance_over_contact,steps,rejected,cpu_seconds,warnings"
         );
         let path = folder.path().join("table.csv");
         write_table(&path, &[KnotRow::default()]).unwrap();

@@ -204,7 +204,7 @@ pub struct FiguresArgs {
     /// Compute nothing: draw what the folder holds of a sweep that is not finished.
     #[arg(long, conflicts_with_all = ["shard", "fresh"])]
     pub as_is: bool,
-    /// Draw the tight knots of `knots-table` as thin tubes with their struts.
+    /// Draw the tight knots of `knots-table` and links of `links-table` as thin tubes with their struts.
     #[arg(long)]
     pub struts: bool,
     /// Folder with knots of your own, one TOML file each, shown in `knots-table` besides the built-in ones.

@@ -10,7 +10,7 @@ use crate::error::CliError;
 use crate::interrupt;
 use crate::progress::{Progress, waiting};
 pub use order::Order;
-use order::{links_used, more_knots};
+use order::{knots_used, links_used};
 pub use report::Failures;
 pub use scene::scene;
 use scene::sweep;
@@ -44,7 +44,7 @@ pub fn tables(
     estimate::print(&waiting("estimating the work", || {
         estimate::of_order(order, &settings)
     })?);
-    if order.knots && !order.as_is {
+    if (order.knots || order.links) && !order.as_is {
         knots(order, &scene, stop, provenance)?;
     }
     if order.elastic {
@@ -72,7 +72,7 @@ fn note_time(name: &str, start: Instant, provenance: &mut Provenance) {
     provenance.wall_seconds.insert(name.to_owned(), seconds);
 }
 
-/// Tight shapes of all knots in the figures.
+/// Tight shapes of all knots and links in the figures, and their tables.
 fn knots(
     order: &Order,
     scene: &ElasticScene,
@@ -81,9 +81,8 @@ fn knots(
 ) -> Result<(), CliError> {
     let table = order.table;
     let start = Instant::now();
-    let names = scene.knots_used(table)?;
-    let more = more_knots(order.quality, &names, table);
-    let links = links_used(order.quality);
+    let (names, more) = knots_used(order, scene)?;
+    let links = links_used(order);
     let progress = Progress::start("knots", names.len() + more.len() + links.len());
     let report = |event: Event<'_>| {
         if let Event::Knot { name, .. } = event {
@@ -100,8 +99,12 @@ fn knots(
     })??;
     progress.finish();
     interrupt::check(stop)?;
-    write_knots(&shapes, table, order.results)?;
-    write_links(&links, order.results)?;
+    if order.knots {
+        write_knots(&shapes, table, order.results)?;
+    }
+    if order.links {
+        write_links(&links, order.results)?;
+    }
     note_time("knots", start, provenance);
     Ok(())
 }

@@ -64,6 +64,6 @@ pub use snapshot::Snapshot;
 pub use stepping::{Advance, TimeStepping};
 pub use stop::{Interrupt, StopReason};
 pub use units::{
-    RodMaterial, RodUnits, SILICONE, bending_time, energy_over_reference, reference_energy,
-    reference_time, twist_time,
+    RodMaterial, RodUnits, SILICONE, bending_time, energy_over_reference, energy_per_mass,
+    reference_energy, reference_time, twist_time,
 };

@@ -148,6 +148,11 @@ pub fn reference_energy(length: f64) -> f64 {
     length / PI
 }
 
+/// Energy over mass of a rod that stores `energy` (in E_0 = E_b h² L), in E_b/ρ: the mass is ρ π h² L.
+pub fn energy_per_mass(energy: f64) -> f64 {
+    energy / PI
+}
+
 /// An `energy` e per cross section (in E_b h) of a rod of reduced `length` L, in units of E_0 = E_b h² L, as energies are
 /// reported.
 ///

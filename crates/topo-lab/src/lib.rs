@@ -32,9 +32,9 @@ pub use battery::{
 pub use cost::{Cost, Estimate, Probe};
 pub use elastic::{
     ACCURACY_CASES, AccuracyRow, Cuts, Elastic, ElasticCase, ElasticReport, ElasticScene, NEAR_TIE,
-    Names, Observable, OwnKnots, OwnTerm, Purpose, RESULTS_VERSION, Rods, ShapeFrame, Si, Tie,
-    Tied, Variant, discharge_frames, estimate_sweep, measure_accuracy, perturbed, reference_scene,
-    run_sweep,
+    Names, Observable, OwnKnots, OwnTerm, Purpose, RESULTS_VERSION, Rest, RestKeys, RestProfile,
+    Rods, ShapeFrame, Si, Tie, Tied, Variant, discharge_frames, estimate_sweep, measure_accuracy,
+    perturbed, reference_scene, run_sweep,
 };
 pub use error::LabError;
 pub use folder::{Outcome, identity, writable};

@@ -54,20 +54,29 @@ pub struct Rods {
     pub color: Rgb,
 }
 
-/// Picture of one tube with rods on a transparent ground; `None` when the window has no pixels.
-pub fn draw(tube: &Tube, rods: &Rods, window: &Window) -> Option<Pixmap> {
-    let colors: Vec<[f32; 3]> = tube.colors.iter().map(|c| c.map(to_linear)).collect();
-    let depths = tube.points.iter().map(|p| p.z);
+/// Picture of tubes of one radius with rods on a transparent ground; `None` without a tube or when the window has no pixels.
+pub fn draw(tubes: &[Tube], rods: &Rods, window: &Window) -> Option<Pixmap> {
+    let linear = |tube: &Tube| tube.colors.iter().map(|c| c.map(to_linear)).collect();
+    let colors: Vec<Vec<[f32; 3]>> = tubes.iter().map(linear).collect();
+    let depths = tubes.iter().flat_map(|tube| &tube.points).map(|p| p.z);
     let (near, far) = depths.fold((f64::MIN, f64::MAX), |(a, b), z| (a.max(z), b.min(z)));
-    let span = (near - far).max(4.0 * tube.radius);
-    let pieces =
-        (0..tube.n_pieces()).map(|i| (tube.points[i], tube.points[tube.next(i)], tube.radius));
+    let span = (near - far).max(4.0 * tubes.first()?.radius);
+    // tube and piece of each capsule
+    let all = tubes.iter().enumerate();
+    let owners: Vec<(usize, usize)> = all
+        .flat_map(|(k, tube)| (0..tube.n_pieces()).map(move |i| (k, i)))
+        .collect();
+    let pieces = owners.iter().map(|&(k, i)| {
+        let tube = &tubes[k];
+        (tube.points[i], tube.points[tube.next(i)], tube.radius)
+    });
     let pieces = pieces.chain(rods.ends.iter().map(|[a, b]| (*a, *b, rods.radius)));
     let rod_color = rods.color.map(to_linear);
     resolve(window, &cast(pieces, window), |p, hit| {
         let behind = ((near - hit.depth) / span).clamp(0.0, 1.0) as f32;
-        if let Some([a, b]) = (hit.piece as usize)
-            .checked_sub(tube.n_pieces())
+        let piece = hit.piece as usize;
+        if let Some([a, b]) = piece
+            .checked_sub(owners.len())
             .and_then(|k| rods.ends.get(k))
         {
             let (axis, from) = (b - a, p - a);
@@ -80,7 +89,9 @@ pub fn draw(tube: &Tube, rods: &Rods, window: &Window) -> Option<Pixmap> {
             };
             return shade(rod_color, &normal, open);
         }
-        let (place, normal) = tube.surface(hit.piece as usize, f64::from(hit.along), p);
+        let (k, piece) = owners[piece];
+        let (tube, colors) = (&tubes[k], &colors[k]);
+        let (place, normal) = tube.surface(piece, f64::from(hit.along), p);
         let [sky, key] = tube.light(place, &normal);
         let (i, along) = (place.floor() as usize, place.fract() as f32);
         let j = tube.next(i);
@@ -250,7 +261,7 @@ mod tests {
     fn a_tube_covers_its_shadow_and_no_more() {
         let scale = Scale::viridis(0.0, 1.0);
         let tube = Tube::new(&bar(0.0, true), &[0.5; 30], false, 1.0, &scale).unwrap();
-        let picture = draw(&tube, &Rods::default(), &window()).unwrap();
+        let picture = draw(&[tube], &Rods::default(), &window()).unwrap();
         let covered: f64 = picture
             .pixels()
             .iter()
@@ -271,7 +282,7 @@ mod tests {
         let mut values = vec![0.0; 30];
         values.extend([1.0; 30]);
         let tube = Tube::new(&v, &values, false, 1.0, &scale).unwrap();
-        let picture = draw(&tube, &Rods::default(), &window()).unwrap();
+        let picture = draw(&[tube], &Rods::default(), &window()).unwrap();
         let crossing = picture.pixel(30, 30).unwrap();
         // Yellow (value 1) passes over dark violet (value 0).
         assert!(

@@ -49,16 +49,21 @@ pub fn smooth(
     (points, colors)
 }
 
+/// The vertices before and after one of `n`; the end of an open curve is its own neighbour.
+fn neighbours(i: usize, n: usize, closed: bool) -> (usize, usize) {
+    if closed {
+        ((i + n - 1) % n, (i + 1) % n)
+    } else {
+        (i.saturating_sub(1), (i + 1).min(n - 1))
+    }
+}
+
 /// Unit tangents by central differences.
 pub fn tangents(points: &[Vector3<f64>], closed: bool) -> Vec<Vector3<f64>> {
     let n = points.len();
     (0..n)
         .map(|i| {
-            let (a, b) = if closed {
-                ((i + n - 1) % n, (i + 1) % n)
-            } else {
-                (i.saturating_sub(1), (i + 1).min(n - 1))
-            };
+            let (a, b) = neighbours(i, n, closed);
             (points[b] - points[a])
                 .try_normalize(1e-12)
                 .unwrap_or_else(Vector3::x)
@@ -75,11 +80,7 @@ pub fn curvatures(
     let n = points.len();
     (0..n)
         .map(|i| {
-            let (a, b) = if closed {
-                ((i + n - 1) % n, (i + 1) % n)
-            } else {
-                (i.saturating_sub(1), (i + 1).min(n - 1))
-            };
+            let (a, b) = neighbours(i, n, closed);
             let length = (points[i] - points[a]).norm() + (points[b] - points[i]).norm();
             let k = (tangents[b] - tangents[a]) / length.max(1e-12);
             k - tangents[i] * tangents[i].dot(&k)

@@ -27,6 +27,17 @@ pub fn key_light() -> Vector3<f64> {
     Vector3::new(-0.45, 0.62, 0.95).normalize()
 }
 
+/// A polygon to be drawn as a tube, in view coordinates.
+#[derive(Debug, Clone, Copy)]
+pub struct Strand<'a> {
+    /// Its vertices.
+    pub vertices: &'a [Vector3<f64>],
+    /// What colours it, one value per vertex.
+    pub values: &'a [f64],
+    /// Whether the last vertex joins the first.
+    pub closed: bool,
+}
+
 /// One tube in view coordinates, ready to be rasterised.
 #[derive(Debug, Clone)]
 pub struct Tube {
@@ -58,6 +69,35 @@ impl Tube {
         radius: f64,
         scale: &Scale,
     ) -> Option<Self> {
+        let strand = Strand {
+            vertices,
+            values,
+            closed,
+        };
+        Self::all(&[strand], radius, scale)?.pop()
+    }
+
+    /// Tubes of one radius around several strands, each in the light that the others leave it.
+    ///
+    /// Returns `None` where [`new`](Self::new) does for one of them.
+    pub fn all(strands: &[Strand<'_>], radius: f64, scale: &Scale) -> Option<Vec<Self>> {
+        let of = |strand: &Strand<'_>| Self::unlit(strand, radius, scale);
+        let mut tubes = strands.iter().map(of).collect::<Option<Vec<_>>>()?;
+        let pieces = |tube: &Self| tube.points.iter().step_by(STRIDE).copied().collect();
+        let pieces: Vec<Vec<Vector3<f64>>> = tubes.iter().map(pieces).collect();
+        let pieces = pieces.concat();
+        for tube in &mut tubes {
+            tube.bake(&pieces);
+        }
+        Some(tubes)
+    }
+
+    fn unlit(strand: &Strand<'_>, radius: f64, scale: &Scale) -> Option<Self> {
+        let Strand {
+            vertices,
+            values,
+            closed,
+        } = *strand;
         let finite = vertices.iter().all(|v| v.iter().all(|c| c.is_finite()));
         if vertices.len() < 2 || vertices.len() != values.len() || !finite || radius <= 0.0 {
             return None;
@@ -66,7 +106,7 @@ impl Tube {
         let tangents = tangents(&points, closed);
         let curvatures = curvatures(&points, &tangents, closed);
         let frames = frames(&tangents, closed);
-        let mut tube = Self {
+        Some(Self {
             points,
             tangents,
             frames,
@@ -75,9 +115,7 @@ impl Tube {
             closed,
             radius,
             light: Vec::new(),
-        };
-        tube.bake();
-        Some(tube)
+        })
     }
 
     /// Number of pieces between neighbouring points.
@@ -166,19 +204,19 @@ impl Tube {
         })
     }
 
-    fn bake(&mut self) {
-        let pieces: Vec<Vector3<f64>> = self.points.iter().step_by(STRIDE).copied().collect();
+    /// Computes the light on the surface, between `pieces` of all tubes of the picture.
+    fn bake(&mut self, pieces: &[Vector3<f64>]) {
         let spacing = STRIDE as f64 * SPACING * self.radius;
         let weight = 2.0 * self.radius * spacing / std::f64::consts::PI;
         let light = key_light();
-        let mut baked = Vec::with_capacity(pieces.len() * N_ANGLES);
+        let mut baked = Vec::with_capacity(self.points.len().div_ceil(STRIDE) * N_ANGLES);
         for row in (0..self.points.len()).step_by(STRIDE) {
             let second = self.tangents[row].cross(&self.frames[row]);
             for k in 0..N_ANGLES {
                 let (sin, cos) = (k as f64 / N_ANGLES as f64 * TAU).sin_cos();
                 let normal = self.frames[row] * cos + second * sin;
                 let p = self.points[row] + normal * self.radius;
-                baked.push(openness(&p, &normal, &light, &pieces, weight, self.radius));
+                baked.push(openness(&p, &normal, &light, pieces, weight, self.radius));
             }
         }
         self.light = baked;
@@ -255,6 +293,23 @@ mod tests {
         assert!(tube.light(middle as f64, &towards)[1] < 0.1);
         let last = tube.points.len() - tube.points.len() / 8;
         assert!(tube.light(last as f64, &towards)[1] > 0.9);
+    }
+
+    #[test]
+    fn a_ring_in_a_ring_is_darker_than_alone() {
+        let scale = Scale::viridis(0.0, 1.0);
+        let (inner, outer) = (circle(80, 3.0), circle(80, 5.2));
+        let strand = |vertices| Strand {
+            vertices,
+            values: &[0.5; 80],
+            closed: true,
+        };
+        let both = Tube::all(&[strand(&inner), strand(&outer)], 1.0, &scale).unwrap();
+        let alone = Tube::new(&inner, &[0.5; 80], true, 1.0, &scale).unwrap();
+        let outward = alone.points[7].normalize();
+        let sky = |tube: &Tube| tube.light(7.0, &outward)[0];
+        assert!(sky(&both[0]) < 0.8 * sky(&alone), "{}", sky(&both[0]));
+        assert_eq!(both[0].points, alone.points);
     }
 
     #[test]

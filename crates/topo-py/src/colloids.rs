@@ -254,6 +254,7 @@ fn discharged<'py>(
     dict.set_item("n_steps", report.n_steps)?;
     dict.set_item("n_rejected", report.rejections.total())?;
     dict.set_item("ledger_residual", report.ledger_residual)?;
+    dict.set_item("cpu_seconds", report.cpu_seconds)?;
     dict.set_item("max_speed", report.own.flow.as_ref().map(|f| f.max_speed))?;
     let ends = [run.start, run.final_state.energy];
     let times = DischargeTimes::between(&record.curve, &EnergyParts::NAMES, ends, &NEMATIC_SHARES);

@@ -327,6 +327,7 @@ fn record<'py>(
         n_steps,
         rejections,
         ledger_residual,
+        cpu_seconds,
         own,
         ..
     } = &record.report;
@@ -334,6 +335,7 @@ fn record<'py>(
     dict.set_item("n_steps", n_steps)?;
     dict.set_item("n_rejected", rejections.total())?;
     dict.set_item("ledger_residual", ledger_residual)?;
+    dict.set_item("cpu_seconds", cpu_seconds)?;
     dict.set_item("min_distance_over_contact", own.min_distance_over_contact)?;
     dict.set_item("link_drift", own.link_drift)?;
     Ok(dict)

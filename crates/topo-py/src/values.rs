@@ -1,11 +1,15 @@
 //! Dictionaries of Python as tables of TOML, and as settings.
 
+use std::path::Path;
+
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString, PyTuple};
+use schemars::JsonSchema;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use toml::{Table, Value};
+use topo_lab::{Document, Keys, LabError};
 
 use crate::refusal::Refusal;
 
@@ -55,8 +59,11 @@ fn value_of(value: &Bound<'_, PyAny>, key: &str) -> PyResult<Option<Value>> {
     }))
 }
 
+/// Arguments of Python that have another name than the field they set.
+const ARGUMENTS: [(&str, &str); 2] = [("n_edges", "edges"), ("seeds", "tilts")];
+
 /// `defaults` with what `given` says instead; a key whose value is `None` is taken out.
-pub fn settings<T: Serialize + DeserializeOwned>(
+pub fn settings<T: Serialize + DeserializeOwned + JsonSchema>(
     defaults: &T,
     given: &Bound<'_, PyDict>,
 ) -> PyResult<T> {
@@ -67,12 +74,18 @@ pub fn settings<T: Serialize + DeserializeOwned>(
         }
     }
     all.extend(table(given, "")?);
-    // "unknown field `q0`, expected ..." names its key
-    let wrong = |e: toml::de::Error| {
-        let key = e.message().split('`').nth(1).unwrap_or("settings");
-        let value = given.get_item(key).ok().flatten();
-        let value = value.map_or_else(|| given.to_string(), |value| value.to_string());
-        Refusal::value(key, value, e.message()).into()
+    let text = all.to_string();
+    let document = Document::new(&text, Path::new("")).map_err(refused)?;
+    Keys::of::<T>().check(&document).map_err(refused)?;
+    Ok(document.read(&text).map_err(refused)?)
+}
+
+/// The message of a scene, without a place in a file.
+fn refused(error: LabError) -> Refusal {
+    let LabError::Scene(fault) = error else {
+        return error.into();
     };
-    all.try_into().map_err(wrong)
+    let argument = ARGUMENTS.iter().find(|(field, _)| *field == fault.key);
+    let key = argument.map_or(&*fault.key, |(_, argument)| argument);
+    Refusal::value(key, fault.found, &fault.expected)
 }

@@ -21,6 +21,8 @@ LONG = pytest.mark.skipif("TOPO_LONG" not in os.environ, reason="long: cargo xta
 def test_tables_series_and_shapes(quick):
     assert len(quick.cases) == 1 and quick.cases[0].startswith("3_1_untwisted_shrunk_n60")
     assert 1 < quick.columns["t99"][0] < 100
+    # not the number 31
+    assert list(quick.columns["knot"]) == ["3_1"]
     assert len(quick.table["t99"]) == 1
     series = quick.series()
     assert list(series["time"]) == sorted(series["time"]) and series["energy"][0] > 0

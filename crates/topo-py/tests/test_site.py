@@ -58,7 +58,7 @@ def test_the_site_shows_the_program_the_movie_equations_and_the_api(site):
     assert "<math" in (site / "tradeoff.html").read_text(encoding="utf-8")
     assert "<math" in (site / "notebooks/how-accurate.html").read_text(encoding="utf-8")
     api = Page((site / "api.html").read_text(encoding="utf-8"))
-    assert {"topobatteries.Rod", "topobatteries.Result.table", "topobatteries.Colloid.charge"} <= api.ids
+    assert {"topobatteries.Rod", "topobatteries.Result.table", "topobatteries.RodDischarge.after_cut", "topobatteries.Rod.ropelength", "topobatteries.Colloid.charge"} <= api.ids
     assert "7_4" in (site / "search/search_index.json").read_text(encoding="utf-8")
 
 

@@ -48,12 +48,52 @@ WRONG = {
     "open curve": (lambda _: topo.Rod(topo.Curve(CIRCLE, closed=False)), "a battery needs a closed curve"),
     "too few edges": (lambda _: topo.Rod(CIRCLE, edges=4), "a rod of 4 edges cannot be modelled: use at least 8 edges"),
     "cut beside the rod": (lambda _: topo.Rod(CIRCLE, edges=40).charge(duration=0.01).cut(1.5), "cut at s/L = 1.5"),
-    "reading": (lambda _: topo.Rod(CIRCLE, reading="loose"), "unknown variant `loose`, expected one of"),
+    "reading": (lambda _: topo.Rod(CIRCLE, reading="loose"), 'reading = "loose": write "shrunk", "hard", "tight" or "own-length"'),
     "share": (lambda p: topo.Rod(CIRCLE, edges=40).charge(duration=0.01).cut().discharge(until_released=0.1).time_to(99), "share = 99: a share released lies between 0 and 1"),
     "coarse grid": (lambda _: topo.Colloid(radius=20, q=1, spacing=8), "spacing"),
-    "key of a colloid": (lambda _: topo.Colloid(radius=5, q=1, anchorin="strong"), "unknown field `anchorin`, expected one of"),
+    "key of a colloid": (lambda _: topo.Colloid(radius=5, q=1, anchorin="strong"), "anchorin = \"strong\": there is no such key; did you mean `anchoring`?"),
     "folder without results": (lambda p: topo.load(p), "has no results (sweep.csv)"),
 }
+
+
+
+def charged():
+    return topo.Rod(CIRCLE, edges=40).charge(duration=0.01)
+
+
+#: Arguments of objects that cannot be: the key and the value that the error has, and a part of the remedy.
+ARGUMENTS = {
+    "twist": (lambda: topo.Rod(CIRCLE, twist="a lot"), "twist", '"a lot"', "write a number"),
+    "slenderness": (lambda: topo.Rod(CIRCLE, slenderness="50"), "slenderness", '"50"', "numbers stand without quotes: 50"),
+    "edges": (lambda: topo.Rod(CIRCLE, edges=60.0), "edges", "60.0", "write 60 without a point"),
+    "tolerance": (lambda: topo.Rod(CIRCLE, tolerance=[1e-3]), "tolerance", "[0.001]", "write a number from 1e-10 to 1"),
+    "reading": (lambda: topo.Rod(CIRCLE, reading="own-lenght"), "reading", '"own-lenght"', 'did you mean "own-length"?'),
+    "friction": (lambda: topo.Rod(CIRCLE, friction={"ratoi": 0.1}), "friction.ratoi", "0.1", "[friction] has no such key; did you mean `ratio`?"),
+    "range": (lambda: topo.Rod(CIRCLE, friction={"range": "contacts"}), "friction.range", '"contacts"', 'did you mean "contact"?'),
+    "no friction": (lambda: topo.Rod(CIRCLE, friction="none"), "friction", '"none"', "a table such as { ratio ="),
+    "contact": (lambda: topo.Rod(CIRCLE, contact="stiff"), "contact.stiffness", '"stiff"', "write a number from 1e-6 to 1e9"),
+    "out of range": (lambda: topo.Rod(CIRCLE, stretch_ratio=-5), "stretch_ratio", "-5", "expected"),
+    "Poisson's ratio": (lambda: topo.Rod(CIRCLE, poisson_ratio="0.3"), "poisson_ratio", "'0.3'", "give a number above -1 and at most 0.5"),
+    "duration": (lambda: topo.Rod(CIRCLE, edges=40).charge(duration="long"), "duration", '"long"', "write a number above 0"),
+    "share": (lambda: charged().cut().discharge(until_released="all"), "until_released", '"all"', "write a number from 1e-6 to 0.999999999"),
+    "radius": (lambda: topo.Colloid(radius="big"), "radius", '"big"', "write a number"),
+    "charge": (lambda: topo.Colloid(q="one"), "q", "one", "give a whole number from 0 to 10000"),
+    "anchoring": (lambda: topo.Colloid(radius=5, anchoring="strog"), "anchoring", '"strog"', 'did you mean "strong"?'),
+    "material": (lambda: topo.Colloid(radius=5, material={"A": 1.0}), "material.A", "1.0", "did you mean `a`?"),
+    "precision": (lambda: topo.Colloid(radius=5, precision="singel"), "precision", '"singel"', 'did you mean "single"?'),
+    "tilts": (lambda: topo.Colloid(radius=5, spacing=1.0).charge(tilts=0.1), "tilts", "0.1", "a list stands in brackets: [0.1]"),
+}
+
+
+@pytest.mark.parametrize("use", ARGUMENTS)
+def test_wrong_arguments_of_objects_name_key_value_and_remedy(use):
+    do, key, value, remedy = ARGUMENTS[use]
+    with pytest.raises(topo.TopoError) as caught:
+        do()
+    error = caught.value
+    print(f"{use}: {error}")
+    assert (error.key, error.value) == (key, value) and remedy in error.remedy
+    assert str(error) == f"{key} = {value}: {error.remedy}" or "expected" in str(error)
 
 
 @pytest.mark.parametrize("use", WRONG)

@@ -8,6 +8,7 @@ pub(crate) mod hooks;
 pub(crate) mod links;
 mod phase;
 pub(crate) mod protocol;
+pub(crate) mod pull;
 pub(crate) mod record;
 mod simulation;
 mod tips;
@@ -84,15 +85,53 @@ impl RodBattery {
         guards: Guards,
         centrelines: &[Polyline],
     ) -> Result<Self, RodError> {
-        let parameters = parameters.clone().checked()?;
-        let accuracy = accuracy.checked()?;
         if !centrelines.iter().all(Polyline::is_closed) {
             return Err(RodError::WrongTopology {
                 operation: "a battery",
                 needed: "a closed",
             });
         }
-        let ropelength = curves::ropelength(centrelines)?;
+        Self::along(parameters, accuracy, guards, centrelines)
+    }
+
+    /// A fibre tied along an open centreline, in any unit, whose ends are [pulled](Self::pull) instead of fused.
+    ///
+    /// As [`new`](Self::new): slenderness and thickness are those of the whole curve. A curve as thick as it is long, such as a straight
+    /// one, counts as one of the least ropelength there is, 6.
+    ///
+    /// # Errors
+    /// A parameter out of range, or a curve that is closed, touches itself or is unusable.
+    pub fn open(
+        parameters: &RodParameters,
+        accuracy: &Accuracy,
+        guards: Guards,
+        centreline: &Polyline,
+    ) -> Result<Self, RodError> {
+        if centreline.is_closed() {
+            return Err(RodError::WrongTopology {
+                operation: "an open tangle",
+                needed: "an open",
+            });
+        }
+        Self::along(
+            parameters,
+            accuracy,
+            guards,
+            std::slice::from_ref(centreline),
+        )
+    }
+
+    fn along(
+        parameters: &RodParameters,
+        accuracy: &Accuracy,
+        guards: Guards,
+        centrelines: &[Polyline],
+    ) -> Result<Self, RodError> {
+        let parameters = parameters.clone().checked()?;
+        let accuracy = accuracy.checked()?;
+        let is_open = centrelines.iter().any(|curve| !curve.is_closed());
+        let least = if is_open { LEAST_ROPELENGTH } else { 0.0 };
+        let ropelength = curves::ropelength(centrelines)?.max(least);
         let tube = parameters.tube(ropelength)?;
         let centrelines = curves::evened(centrelines, parameters.n_edges)?;
         let start = start_of(&centrelines, &tube, &parameters)?;
@@ -216,8 +255,9 @@ impl RodBattery {
         let pairs = both().flat_map(|(own, curve)| own.vertices().iter().zip(curve.vertices()));
         let moved = pairs.map(|(a, b)| (a - b).norm()).fold(0.0, f64::max) / h;
         let is_alike = self.centrelines.len() == curves.len()
-            && both()
-                .all(|(own, curve)| curve.is_closed() && curve.n_vertices() == own.n_vertices());
+            && both().all(|(own, curve)| {
+                curve.is_closed() == own.is_closed() && curve.n_vertices() == own.n_vertices()
+            });
         if !is_alike || moved > Self::FARTHEST {
             return Err(RodError::Disturbance {
                 moved: if is_alike { moved } else { f64::INFINITY },
@@ -231,7 +271,13 @@ impl RodBattery {
         })
     }
 
-    /// The same battery started from the mirror image of its curve; the twist is not mirrored.
+    /// The same battery started from the mirror image of its curve.
+    ///
+    /// The rods are the same: neither their twist nor their natural shape is mirrored. It is the mirror image of this battery with the
+    /// opposite twist and the [mirrored](RestShape::mirrored) natural shape.
+    ///
+    /// # Validation
+    /// `law_fibres_with_a_natural_shape_are_mirrored_with_it`
     ///
     /// # Errors
     /// As [`new`](Self::new); none in practice, since the curve itself was accepted.
@@ -286,6 +332,9 @@ impl RodBattery {
         &self.accuracy
     }
 }
+
+/// Length over radius of the shortest thick ropes: below that of a circle, 2π.
+const LEAST_ROPELENGTH: f64 = 6.0;
 
 /// The rods on centrelines that are scaled as the reading says.
 fn start_of(

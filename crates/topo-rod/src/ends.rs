@@ -1,5 +1,6 @@
 //! How the ends of an open rod are held, moved and loaded.
 
+mod course;
 mod placed;
 
 use nalgebra::Vector3;
@@ -8,6 +9,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::RodError;
 
+pub use course::{Grip, Ramp, TimeCourse};
+pub(crate) use course::{GripSchedule, GripSegment};
 pub(crate) use placed::PlacedEnds;
 pub use placed::RodEnds;
 

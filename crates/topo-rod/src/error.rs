@@ -68,6 +68,22 @@ pub enum RodError {
         /// What is inconsistent, and what would be right.
         reason: &'static str,
     },
+    /// A number in time that is none.
+    #[error("{key} cannot follow its course in time: {reason}")]
+    Course {
+        /// Which number of a grip.
+        key: &'static str,
+        /// What is wrong, and what would be right.
+        reason: &'static str,
+    },
+    /// A load of the ends that cannot be.
+    #[error("{key} cannot be: {reason}")]
+    Load {
+        /// Its key in a scene.
+        key: &'static str,
+        /// What is wrong, and what would be right.
+        reason: &'static str,
+    },
     /// A turning angle reached a half turn: the discrete curvature has no value there.
     #[error(
         "the rod folds back on itself at vertex {vertex}: use more edges or a smoother start curve"

@@ -21,6 +21,7 @@ pub mod friction;
 mod geometry;
 mod guard;
 mod layout;
+mod load;
 mod model;
 mod newton;
 mod parameters;
@@ -28,22 +29,24 @@ mod state;
 pub mod viscosity;
 
 pub use battery::RodBattery;
-pub use battery::charge::{ChargeSettings, ChargedRod};
+pub use battery::charge::{ChargeSettings, ChargedRod, Twisting};
 pub use battery::cut::{CutCandidate, CutRod, CutSite, cut_candidates};
 pub use battery::discharge::{Discharge, DischargeSettings};
 pub use battery::hooks::RunHooks;
 pub use battery::links::Linking;
 pub use battery::protocol::Protocol;
-pub use battery::record::{PhaseReport, RodPhase, RodSample, RunRecord};
+pub use battery::pull::PullSettings;
+pub use battery::record::{LoadReport, PhaseReport, RodPhase, RodSample, RunRecord};
 pub use breaking::{Breaking, Broken, Criterion};
 pub use circle::{cut_circle_energy, cut_circle_time};
 pub use density::smoothed_density;
-pub use ends::{EndCondition, EndMotion, Ends, RodEnds};
+pub use ends::{EndCondition, EndMotion, Ends, Grip, Ramp, RodEnds, TimeCourse};
 pub use error::RodError;
 pub use geometry::Geometry;
 pub use guard::Guards;
 pub use layout::{Chain, Layout};
-pub use model::{RodModel, WorkAccount};
+pub use load::{EndLoad, LoadPlace};
+pub use model::{GripForce, RodModel, WorkAccount};
 pub use nalgebra::{Matrix3, Vector3};
 pub use parameters::{
     Accuracy, ContactParameters, FrictionParameters, FrictionRange, IntegratorKind, Reading,

@@ -2,11 +2,16 @@
 
 mod account;
 mod approaching;
+mod evaluate;
+mod grips;
 mod implicit;
 mod memory;
+mod motor;
+mod named;
 mod parts;
 
 pub use account::WorkAccount;
+pub use grips::GripForce;
 
 use std::cell::Cell;
 
@@ -15,22 +20,27 @@ use topo_core::{Ledger, Model, Rejection};
 
 use crate::contact::ContactPairs;
 use crate::drag::Drag;
-use crate::ends::PlacedEnds;
+use crate::ends::{GripSchedule, GripSegment, PlacedEnds};
 use crate::energy::{
     At, ContactEnergy, EnergyTerm, Force, RodParts, Stiffness, Twist, checked_name, terms_of,
 };
 use crate::friction::Friction;
 use crate::guard::{RiseBudget, certify, largest_displacement};
+use crate::load::{EndLoad, Load};
 use crate::newton::{NewtonMatrix, NewtonTwist};
-use crate::viscosity::{CentrelineViscosity, TwistViscosity, remove_mean};
-use crate::{Accuracy, Chain, Geometry, Guards, RodEnds, RodError, RodParameters, RodState, Tube};
+use crate::viscosity::{CentrelineViscosity, TwistViscosity};
+use crate::{
+    Accuracy, Chain, Ends, Geometry, Guards, RodEnds, RodError, RodParameters, RodState, Tube,
+};
 use approaching::ApproachingPairs;
-use parts::{Accepted, Frozen, unsolvable};
+use motor::Motor;
+use named::Named;
+use parts::{Accepted, Frozen};
 
 pub(crate) use memory::ModelMemory;
 #[cfg(test)]
 pub(crate) use memory::PARTS;
-pub(crate) use parts::CHANNELS;
+pub(crate) use parts::{CHANNELS, LOAD};
 
 /// Terms, mobility, guards and ledger of one rod.
 pub struct RodModel {
@@ -46,6 +56,11 @@ pub struct RodModel {
     has_strands: bool,
     ends: Vec<PlacedEnds>,
     is_driven: bool,
+    load: Option<Box<Load>>,
+    /// The ends in time, and what they do at present.
+    driven: Option<Box<(GripSchedule, GripSegment)>>,
+    /// What turns the ends of a closed rod against each other.
+    motor: Option<Motor>,
     held_vertices: Vec<(usize, Vector3<f64>)>,
     held_edges: Vec<(usize, f64)>,
     centreline: CentrelineViscosity,
@@ -84,48 +99,6 @@ struct Evaluation {
     force: Force,
     energies: Vec<f64>,
     couplings: Vec<(u32, u32, f64)>,
-}
-
-/// What the parameters name, and how far strands act on each other.
-#[derive(Clone, Copy)]
-struct Named {
-    twist: Option<Twist>,
-    contact: Option<ContactEnergy>,
-    friction: Option<Friction>,
-    reach: f64,
-}
-
-impl Named {
-    fn of(parameters: &RodParameters, tube: &Tube) -> Self {
-        let twist = Twist::of(parameters);
-        let contact = ContactEnergy::of(parameters, tube);
-        let friction = parameters
-            .friction
-            .filter(|f| f.ratio > 0.0)
-            .map(|f| Friction {
-                ratio: f.ratio,
-                range: tube.friction_range,
-            });
-        let mut reach = contact.map_or(0.0, |contact| contact.diameter);
-        if let Some(friction) = friction {
-            reach = reach.max(friction.range);
-        }
-        Self {
-            twist,
-            contact,
-            friction,
-            reach,
-        }
-    }
-
-    fn pairs(&self, skin: f64, is_closed: bool) -> ContactPairs {
-        let mut pairs = ContactPairs::new(self.reach, skin);
-        if self.contact.is_some() {
-            pairs = pairs.with_core();
-        }
-        pairs.set_cyclic(is_closed);
-        pairs
-    }
 }
 
 /// `n` flags, those of `places` set.
@@ -181,6 +154,9 @@ impl RodModel {
             pairs,
             has_strands: reach > 0.0,
             is_driven: ends.iter().any(|placed| placed.ends.is_driven()),
+            load: None,
+            driven: None,
+            motor: None,
             ends,
             held_vertices,
             held_edges,
@@ -227,6 +203,38 @@ impl RodModel {
         self.parts = RodParts::of(&self.terms);
         self.has_own_terms = true;
         self.newton.loosen_ground();
+        self.ledger = self.empty_ledger();
+        self.forget();
+        Ok(self)
+    }
+
+    /// The model with a load at the ends of the open component `component`, attached where they are at `state`. What it takes up is
+    /// the channel `load` of the energy account. Call it before [`start`](Self::start).
+    ///
+    /// # Errors
+    /// A load that cannot be, or a component that is closed or missing.
+    ///
+    /// # Validation
+    /// `law_what_is_released_is_work_and_heat`
+    pub fn with_load(
+        mut self,
+        load: EndLoad,
+        component: usize,
+        state: &RodState,
+    ) -> Result<Self, RodError> {
+        let chain = *state.chain(component)?;
+        if chain.is_closed() {
+            return Err(RodError::WrongTopology {
+                operation: "a load",
+                needed: "an open",
+            });
+        }
+        let own = self.ends.iter().find(|placed| placed.chain == chain);
+        let ends = own.map_or_else(Ends::default, |placed| placed.ends);
+        let load = Load::attached(load.checked(&ends)?, &chain, state);
+        self.centreline = self.centreline.with_load(load.line());
+        self.newton = self.newton.with_load(load.line());
+        self.load = Some(Box::new(load));
         self.ledger = self.empty_ledger();
         self.forget();
         Ok(self)
@@ -284,97 +292,13 @@ impl RodModel {
         self.at.stamp = None;
         self.frozen = None;
     }
-
-    fn evaluate(&mut self, state: &RodState) -> Result<(), Rejection> {
-        if self.at.stamp == Some(state.stamp()) {
-            return Ok(());
-        }
-        self.at.stamp = None;
-        self.n_evaluations += 1;
-        let sound = self.at.geometry.update(state);
-        if !state.vertices().iter().all(|x| x.sum().is_finite()) {
-            return Err(Rejection::NotFinite { what: "a vertex" });
-        }
-        if !sound {
-            return Err(Rejection::Domain {
-                what: "a collapsed edge, or a fold of a half turn",
-            });
-        }
-        if self.has_strands {
-            self.pairs.update(state);
-        }
-        let at = At {
-            state,
-            geometry: &self.at.geometry,
-            pairs: &self.pairs,
-        };
-        self.at.force.reset(state);
-        self.at.energies.clear();
-        self.n_term_evaluations += 1;
-        for term in &self.terms {
-            let energy = term.add_force(at, &mut self.at.force);
-            self.at.energies.push(energy);
-        }
-        for placed in self.ends.iter().filter(|placed| placed.ends.is_driven()) {
-            let (vertices, edges) = (placed.vertices(), placed.edges());
-            for (end, motion) in placed.ends.motions.iter().enumerate() {
-                self.at.force.vertex[vertices[end]] += Vector3::from(motion.force);
-                self.at.force.torque[edges[end]] += motion.torque;
-            }
-        }
-        if let Some(friction) = self.friction {
-            self.n_friction_evaluations += 1;
-            friction.couplings(self.pairs.active(), &mut self.at.couplings);
-        }
-        if !self.at.energies.iter().sum::<f64>().is_finite() {
-            return Err(Rejection::NotFinite { what: "the energy" });
-        }
-        self.at.stamp = Some(state.stamp());
-        Ok(())
-    }
-
-    fn solve_rate(&mut self, state: &RodState, rate: &mut [f64]) -> Result<(), Rejection> {
-        self.evaluate(state)?;
-        let n = self.n_vertices;
-        for (i, f) in self.at.force.vertex.iter().enumerate() {
-            (rate[i], rate[n + i], rate[2 * n + i]) = (f.x, f.y, f.z);
-        }
-        for &(i, v) in &self.held_vertices {
-            (rate[i], rate[n + i], rate[2 * n + i]) = (v.x, v.y, v.z);
-        }
-        if self.has_own_terms && self.centreline.is_floating() {
-            remove_mean(rate, n);
-        }
-        self.centreline
-            .prepare(state, &self.pairs, self.friction)
-            .map_err(|e| unsolvable(e, "the centreline mobility"))?;
-        self.centreline
-            .solve(state, &self.at.couplings, &mut rate[..3 * n]);
-        if let Some(rotation) = self.rotation.as_mut() {
-            let w = &mut rate[3 * n..];
-            w.copy_from_slice(&self.at.force.torque);
-            for &(j, turn) in &self.held_edges {
-                w[j] = turn;
-            }
-            rotation
-                .prepare(state, &self.at.geometry.cosine, 0.0)
-                .map_err(|e| unsolvable(e, "the twist mobility"))?;
-            rotation.solve(state, &self.at.geometry.cosine, 0.0, w);
-        }
-        Ok(())
-    }
 }
 
 impl Model for RodModel {
     type State = RodState;
 
     fn n_dof(&self) -> usize {
-        3 * self.n_vertices
-            + if self.twist.is_some() {
-                self.n_edges
-            } else {
-                0
-            }
+        3 * self.n_vertices + self.n_turns() + usize::from(self.has_clock())
     }
 
     fn rate(&mut self, state: &RodState, rate: &mut [f64]) -> Result<(), Rejection> {
@@ -391,13 +315,21 @@ impl Model for RodModel {
         }
         self.stamps.set(self.stamps.get() + 1);
         from.moved_by(step, self.twist.is_some(), self.stamps.get(), to);
+        if self.has_clock() {
+            let passed = step[step.len() - 1];
+            to.set_clock(from.clock() + passed);
+            if let Some(motor) = &self.motor {
+                motor.twist(passed, to);
+            }
+        }
         Ok(())
     }
 
     /// Largest component of the displacement error in h; rotations count by the arc through which they move the surface.
     fn error_norm(&self, error: &[f64]) -> f64 {
         let (moved, turned) = error.split_at(3 * self.n_vertices);
-        topo_core::max_norm(moved).max(ROTATION_WEIGHT * topo_core::max_norm(turned))
+        let turned = topo_core::max_norm(&turned[..self.n_turns()]);
+        topo_core::max_norm(moved).max(ROTATION_WEIGHT * turned)
     }
 
     fn check(
@@ -433,8 +365,8 @@ impl Model for RodModel {
             certify(from, step, moved, &self.pairs, &mut self.near)?;
         }
         self.evaluate(to)?;
-        let total: f64 = self.at.energies.iter().sum();
-        let rise = total - self.accepted.total - self.external_work(from, step, dt).max(0.0);
+        let total = self.total();
+        let rise = total - self.accepted.total - self.external_work(from, to, step, dt).max(0.0);
         if rise > self.rises.allowed(&self.guards, self.accepted.total) {
             return Err(Rejection::EnergyRise {
                 relative: rise / self.accepted.total.abs().max(1e-12),
@@ -444,10 +376,10 @@ impl Model for RodModel {
     }
 
     fn accepted(&mut self, from: &RodState, to: &RodState, step: &[f64], dt: f64) {
-        let work = self.external_work(from, step, dt);
+        let work = self.external_work(from, to, step, dt);
         self.expected.step();
         self.ledger.add_work(work);
-        let total: f64 = self.at.energies.iter().sum();
+        let total = self.total();
         self.rises.book(total - self.accepted.total - work.max(0.0));
         if self.is_driven {
             self.rises.widen(total);

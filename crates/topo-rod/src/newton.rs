@@ -1,5 +1,7 @@
 //! The matrix of the linearly implicit steps, η K + η_f C + s H, on the centreline.
 
+mod twist;
+
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 use topo_sparse::{SparseCholesky, SparseError};
@@ -7,8 +9,10 @@ use topo_sparse::{SparseCholesky, SparseError};
 use crate::contact::{ContactPairs, KnownPairs};
 use crate::drag::{Drag, DragCorrection};
 use crate::energy::Stiffness;
-use crate::viscosity::{TwistViscosity, remove_mean};
+use crate::load::LoadLine;
+use crate::viscosity::remove_mean;
 use crate::{Chain, Layout, RodState};
+pub(crate) use twist::{NewtonTwist, NewtonTwistMemory};
 
 /// Block matrix of the centreline with a symbolic factor that is kept as long as the pairs in contact are known to it.
 #[derive(Debug, Default)]
@@ -24,6 +28,8 @@ pub(crate) struct NewtonMatrix {
     /// Whether a term may hold the rod as a whole.
     is_tethered: bool,
     drag: Option<DragCorrection>,
+    /// The vertices that a load acts on, and the resistance of its dashpot.
+    load: Option<(LoadLine, Matrix3<f64>)>,
     layout: Layout,
     work: Vec<f64>,
     right: Vec<f64>,
@@ -47,6 +53,7 @@ pub(crate) struct FactorMemory {
     values: Vec<f64>,
     couplings: Vec<(u32, u32, f64)>,
     driven: Vec<(usize, usize, Matrix3<f64>)>,
+    damping: Option<Matrix3<f64>>,
 }
 
 impl FactorMemory {
@@ -65,6 +72,7 @@ impl NewtonMatrix {
             values: solver.values().to_vec(),
             couplings: self.couplings.clone(),
             driven: self.driven.clone(),
+            damping: self.load.map(|load| load.1),
         };
         NewtonMemory {
             pairs: self.pairs.clone(),
@@ -98,6 +106,9 @@ impl NewtonMatrix {
                 several.prepare(solver);
             }
             (self.couplings, self.driven) = (factor.couplings, factor.driven);
+            if let (Some(load), Some(damping)) = (&mut self.load, factor.damping) {
+                load.1 = damping;
+            }
             self.layout.clone_from(state);
         }
         self.n_patterns = memory.n_patterns;
@@ -114,10 +125,29 @@ impl NewtonMatrix {
         }
     }
 
+    /// The same for other vertices that are held.
+    pub(crate) fn hold(&mut self, fixed: &[bool]) {
+        self.fixed = fixed.to_vec();
+        self.floating = !fixed.contains(&true);
+    }
+
     /// The same with the drag on floating components of several.
     pub(crate) fn with_drag(mut self, drag: Option<Drag>) -> Self {
         self.drag = drag.map(|drag| DragCorrection::new(drag, 3));
         self
+    }
+
+    /// The same with the dashpot of a load.
+    pub(crate) fn with_load(mut self, line: LoadLine) -> Self {
+        self.load = Some((line, Matrix3::zeros()));
+        self
+    }
+
+    /// Sets the resistance of the dashpot of a load before a matrix is made; with that of the spring it is in the stiffness.
+    pub(crate) fn damp(&mut self, damping: Matrix3<f64>) {
+        if let Some(load) = &mut self.load {
+            load.1 = damping;
+        }
     }
 
     /// Bytes held for further components.
@@ -301,6 +331,15 @@ impl NewtonMatrix {
         if let Some(several) = &self.drag {
             several.drag().add_product(&self.work, &mut self.right);
         }
+        if let Some((line, damping)) = &self.load {
+            let push = damping * line.relative(&self.work, n);
+            let ends = line.from.map(|i| (i, -1.0));
+            for (i, side) in ends.into_iter().chain([(line.to, 1.0)]) {
+                for k in 0..3 {
+                    self.right[3 * i + k] += side * push[k];
+                }
+            }
+        }
         for (free, held, block) in &self.driven {
             let w = Vector3::from_fn(|k, _| self.work[k * n + held]);
             let pull = block * w;
@@ -368,129 +407,6 @@ fn second_neighbours(state: &RodState) -> impl Iterator<Item = (usize, usize)> {
         (0..n_pairs).map(move |i| (first + i, first + (i + 2) % n))
     };
     state.components().iter().flat_map(along)
-}
-
-/// The matrix of the linearly implicit steps on the edge rotations, M_θ + s H_θ with H_θ of the twist energy.
-#[derive(Debug)]
-pub(crate) struct NewtonTwist {
-    viscosity: TwistViscosity,
-    layout: Layout,
-    cosine: Vec<f64>,
-    stiffness: f64,
-    held: Vec<bool>,
-    work: Vec<f64>,
-}
-
-/// What the twist matrix remembers: of what it was made.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-pub(crate) struct NewtonTwistMemory {
-    cosine: Vec<f64>,
-    stiffness: f64,
-    n_factorisations: Option<u64>,
-}
-
-impl NewtonTwistMemory {
-    /// Whether it is that of a rod of `n` vertices; values that are not finite are refused when they are factorised.
-    pub(crate) fn is_of(&self, n: usize) -> bool {
-        self.cosine.len()
-            == if self.n_factorisations.is_some() {
-                n
-            } else {
-                0
-            }
-    }
-}
-
-impl NewtonTwist {
-    /// What it remembers.
-    pub(crate) fn memory(&self) -> NewtonTwistMemory {
-        NewtonTwistMemory {
-            cosine: self.cosine.clone(),
-            stiffness: self.stiffness,
-            n_factorisations: self.viscosity.memory(),
-        }
-    }
-
-    /// Makes the matrix again that was remembered.
-    pub(crate) fn recall(
-        &mut self,
-        layout: &Layout,
-        memory: NewtonTwistMemory,
-    ) -> Result<(), SparseError> {
-        if memory.n_factorisations.is_some() {
-            self.layout.clone_from(layout);
-            self.stiffness = memory.stiffness;
-            self.work = vec![0.0; layout.n_edges()];
-        }
-        self.cosine = memory.cosine;
-        self.viscosity.recall(
-            layout,
-            &self.cosine,
-            self.stiffness,
-            memory.n_factorisations,
-        )
-    }
-
-    pub(crate) fn new(held: Vec<bool>) -> Self {
-        let viscosity = TwistViscosity::new(held.clone());
-        Self {
-            viscosity,
-            layout: Layout::default(),
-            cosine: Vec::new(),
-            stiffness: 0.0,
-            held,
-            work: Vec::new(),
-        }
-    }
-
-    pub(crate) fn n_factorisations(&self) -> u64 {
-        self.viscosity.n_factorisations()
-    }
-
-    pub(crate) fn n_bytes(&self) -> usize {
-        let vectors = self.cosine.capacity() + self.work.capacity();
-        self.viscosity.n_bytes() + size_of::<f64>() * vectors
-    }
-
-    pub(crate) fn prepare(
-        &mut self,
-        layout: &Layout,
-        cosine: &[f64],
-        stiffness: f64,
-    ) -> Result<(), SparseError> {
-        self.layout.clone_from(layout);
-        self.cosine.clear();
-        self.cosine.extend_from_slice(cosine);
-        self.stiffness = stiffness;
-        self.viscosity.prepare(layout, cosine, stiffness)
-    }
-
-    /// w ← (M_θ + s H_θ)⁻¹ M_θ w; entries of held edges stay as they are.
-    pub(crate) fn solve(&mut self, w: &mut [f64]) {
-        self.work.clear();
-        self.work.extend_from_slice(w);
-        let right = &mut *w;
-        let given: Vec<(usize, f64)> = self
-            .held
-            .iter()
-            .enumerate()
-            .filter(|h| *h.1)
-            .map(|(j, _)| (j, right[j]))
-            .collect();
-        right.fill(0.0);
-        for chain in self.layout.components() {
-            let half = 0.5 / chain.rest_length();
-            for i in chain.interior() {
-                let (a, b) = (chain.edge_before(i), i);
-                right[a] += half * (self.work[a] - self.cosine[i] * self.work[b]);
-                right[b] += half * (self.work[b] - self.cosine[i] * self.work[a]);
-            }
-        }
-        given.iter().for_each(|g| right[g.0] = g.1);
-        self.viscosity
-            .solve(&self.layout, &self.cosine, self.stiffness, right);
-        given.iter().for_each(|g| right[g.0] = g.1);
-    }
 }
 
 #[cfg(test)]

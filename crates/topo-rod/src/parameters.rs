@@ -101,17 +101,21 @@ impl Default for FrictionParameters {
 }
 
 /// Material, load and resolution of one rod.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RodParameters {
     /// Slenderness L/h: no unit.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub slenderness: f64,
     /// How the slenderness is read.
     pub reading: Reading,
     /// Number of edges N.
+    #[schemars(range(min = Self::LEAST_EDGES))]
     pub n_edges: usize,
     /// Ratio α of twist to bending stiffness, 1/(1 + Poisson's ratio): no unit.
+    #[schemars(range(min = 1e-6, max = 1e3))]
     pub twist_ratio: f64,
     /// Ratio γ = E/E_b of stretching to bending modulus: no unit.
+    #[schemars(range(min = 1e-3, max = 1e6))]
     pub stretch_ratio: f64,
     /// Twist density θ'h tied in before the ends are fused; `None`: no twist is modelled at all.
     pub twist: Option<f64>,
@@ -226,10 +230,11 @@ pub enum IntegratorKind {
 }
 
 /// Settings that decide on speed and accuracy.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Accuracy {
     /// Target of the local error of a step, in h.
+    #[schemars(range(min = 1e-10, max = 1))]
     pub tolerance: f64,
     /// Coefficient g of ROS2-W (1 + 1/√2 for loose, 1 − 1/√2 for tight tolerances).
     pub gamma: f64,

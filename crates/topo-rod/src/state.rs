@@ -31,6 +31,8 @@ pub struct RodState {
     #[serde(rename = "chain")]
     joined: Joined,
     stamp: u64,
+    /// Time in η/E_b, of a rod whose ends are driven in time; else it stands at 0.
+    clock: f64,
 }
 
 /// How vertices are joined, and what their material is like at rest.
@@ -87,6 +89,7 @@ impl RodState {
             twists,
             joined: Layout::of([Chain::new(n, closed, rest_length)]).into(),
             stamp: 0,
+            clock: 0.0,
         };
         for i in state.interior() {
             let (a, b) = (state.tangent(state.edge_before(i)), state.tangent(i));
@@ -136,8 +139,35 @@ impl RodState {
         is_alike
             && self.joined.layout == fresh.joined.layout
             && (self.vertices.len(), self.twists.len()) == (n, n)
+            && self.clock.is_finite()
             && self.vertices.iter().flatten().all(|x| x.is_finite())
             && self.twists.iter().all(|x| x.is_finite())
+    }
+
+    /// Time in η/E_b, of a rod whose ends are driven in time.
+    pub(crate) fn clock(&self) -> f64 {
+        self.clock
+    }
+
+    /// Sets the clock.
+    pub(crate) fn set_clock(&mut self, time: f64) {
+        self.clock = time;
+    }
+
+    /// Adds to the twist of a vertex, in radians.
+    pub(crate) fn add_twist(&mut self, vertex: usize, turn: f64) {
+        self.twists[vertex] += turn;
+    }
+
+    /// The rods with a twist density, in radians per h, taken out of all joints.
+    pub(crate) fn untwisted(mut self, density: f64) -> Self {
+        let chains = self.components().to_vec();
+        for chain in chains {
+            chain
+                .interior()
+                .for_each(|i| self.twists[i] -= density * chain.rest_length());
+        }
+        self
     }
 
     /// Identity of the numbers held: equal stamps mean equal states within one model.
@@ -171,6 +201,7 @@ impl RodState {
                 material: Material::of_link(&rods),
             },
             stamp: 0,
+            clock: 0.0,
         })
     }
 
@@ -189,6 +220,7 @@ impl RodState {
                 material: material.map(|m| Box::new(m.component(c, own))),
             },
             stamp: 0,
+            clock: 0.0,
         })
     }
 
@@ -248,6 +280,7 @@ impl RodState {
                 material,
             },
             stamp: self.stamp + 1,
+            clock: 0.0,
         })
     }
 
@@ -266,6 +299,7 @@ impl RodState {
         let n = self.vertices.len();
         to.joined.layout.clone_from(&self.joined.layout);
         to.stamp = stamp;
+        to.clock = self.clock;
         to.vertices.clear();
         to.vertices.extend(
             (0..n).map(|i| self.vertices[i] + Vector3::new(step[i], step[n + i], step[2 * n + i])),

@@ -4,13 +4,19 @@
 //! exact solution with that vertex at rest, and the mean velocity is then removed. Several components are grounded each, and get the
 //! velocity of each by their drag (`drag.rs`).
 
+mod twist;
+
+use nalgebra::Matrix3;
 use serde::{Deserialize, Serialize};
 use topo_sparse::{SparseCholesky, SparseError};
 
 use crate::contact::{ContactPairs, KnownPairs};
 use crate::drag::{Drag, DragCorrection};
 use crate::friction::Friction;
+use crate::load::{LoadCorrection, LoadLine};
 use crate::{Chain, Layout, RodState};
+
+pub use twist::TwistViscosity;
 
 /// Mobility of the centreline: turns forces f into velocities v, the three components at once.
 ///
@@ -30,6 +36,7 @@ pub struct CentrelineViscosity {
     fixed: Vec<bool>,
     grounded: bool,
     drag: Option<DragCorrection>,
+    load: Option<LoadCorrection>,
     is_current: bool,
     n_patterns: u64,
     n_factorisations: u64,
@@ -87,16 +94,42 @@ impl CentrelineViscosity {
             fixed,
             grounded,
             drag: None,
+            load: None,
             is_current: false,
             n_patterns: 0,
             n_factorisations: 0,
         }
     }
 
+    /// The same for other vertices that are held.
+    pub(crate) fn hold(&mut self, fixed: &[bool]) {
+        self.fixed = fixed.to_vec();
+        self.grounded = !fixed.contains(&true);
+        self.is_current = false;
+    }
+
     /// The same with the drag on floating components of several.
     pub(crate) fn with_drag(mut self, drag: Option<Drag>) -> Self {
         self.drag = drag.map(|drag| DragCorrection::new(drag, 1));
         self
+    }
+
+    /// The same with the dashpot of a load.
+    pub(crate) fn with_load(mut self, line: LoadLine) -> Self {
+        self.load = Some(LoadCorrection::new(line));
+        self
+    }
+
+    /// The dashpot of a load, if there is one.
+    pub(crate) fn load(&self) -> Option<&LoadCorrection> {
+        self.load.as_ref()
+    }
+
+    /// Sets the resistance of the dashpot of a load for the next solutions.
+    pub(crate) fn damp(&mut self, damping: Matrix3<f64>) {
+        if let Some(load) = &mut self.load {
+            load.damping = damping;
+        }
     }
 
     /// The drag on floating components, if there are several.
@@ -212,6 +245,13 @@ impl CentrelineViscosity {
         if let Some(several) = &mut self.drag {
             several.prepare(solver);
         }
+        if let Some(load) = &mut self.load {
+            let column = load.unit(&self.fixed);
+            solver.solve_in_place(column, 1);
+            if let Some(several) = &self.drag {
+                several.correct(column);
+            }
+        }
         Ok(())
     }
 
@@ -269,11 +309,14 @@ impl CentrelineViscosity {
         if let Some(solver) = self.solver.as_mut() {
             solver.solve_in_place(v, 3);
         }
+        if let Some(several) = &self.drag {
+            several.correct(v);
+        }
+        if let Some(load) = &self.load {
+            load.correct(v);
+        }
         match &self.drag {
-            Some(several) => {
-                several.correct(v);
-                several.drag().keep_centroid(v);
-            }
+            Some(several) => several.drag().keep_centroid(v),
             None if self.grounded => remove_mean(v, n),
             None => {}
         }
@@ -333,148 +376,4 @@ pub fn twist_form(layout: &Layout, cosine: impl Fn(usize) -> f64, u: &[f64], w: 
         terms.sum::<f64>() / (2.0 * chain.rest_length())
     };
     layout.components().iter().map(of).sum()
-}
-
-/// Twist viscosity, optionally with a multiple of the twist stiffness: solves (M_θ + s H_θ) w = q, a (cyclic) tridiagonal system.
-#[derive(Debug)]
-pub struct TwistViscosity {
-    solver: Option<SparseCholesky>,
-    diagonal: Vec<usize>,
-    next: Vec<usize>,
-    fixed: Vec<bool>,
-    n_factorisations: u64,
-}
-
-impl TwistViscosity {
-    /// Bytes held by the matrix, its factor and where their entries are.
-    pub fn n_bytes(&self) -> usize {
-        let matrix = self
-            .solver
-            .as_ref()
-            .map_or(0, |s| s.n_nonzeros() + s.n_factor_nonzeros());
-        size_of::<f64>() * matrix
-            + size_of::<usize>() * (self.diagonal.capacity() + self.next.capacity())
-    }
-
-    /// For a rod whose edges marked in `fixed` have a prescribed rotation.
-    pub fn new(fixed: Vec<bool>) -> Self {
-        Self {
-            solver: None,
-            diagonal: Vec::new(),
-            next: Vec::new(),
-            fixed,
-            n_factorisations: 0,
-        }
-    }
-
-    /// How often a matrix was factorised.
-    pub fn n_factorisations(&self) -> u64 {
-        self.n_factorisations
-    }
-
-    /// Whether a matrix was factorised, and how often.
-    pub(crate) fn memory(&self) -> Option<u64> {
-        self.solver.as_ref().map(|_| self.n_factorisations)
-    }
-
-    /// Makes a matrix again, as [`prepare`](Self::prepare), where one was remembered.
-    pub(crate) fn recall(
-        &mut self,
-        layout: &Layout,
-        cosine: &[f64],
-        stiffness: f64,
-        memory: Option<u64>,
-    ) -> Result<(), SparseError> {
-        if let Some(n_factorisations) = memory {
-            self.prepare(layout, cosine, stiffness)?;
-            self.n_factorisations = n_factorisations;
-        }
-        Ok(())
-    }
-
-    /// Assembles and factorises M_θ + `stiffness` Σ_i (w_i − w_{i−1})². Of several components, `stiffness` is that of the first; it
-    /// is inverse to the natural length of an edge.
-    ///
-    /// # Errors
-    /// [`SparseError`] when the matrix cannot be factorised.
-    pub fn prepare(
-        &mut self,
-        layout: &Layout,
-        cosine: &[f64],
-        stiffness: f64,
-    ) -> Result<(), SparseError> {
-        if self.solver.is_none() {
-            self.build_pattern(layout)?;
-        }
-        let Some(solver) = self.solver.as_mut() else {
-            return Ok(());
-        };
-        let values = solver.values_mut();
-        values.fill(0.0);
-        for (chain, stiffness) in stiffnesses(layout, stiffness) {
-            let half = 0.5 / chain.rest_length();
-            for i in chain.interior() {
-                let (a, b) = (chain.edge_before(i), i);
-                values[self.diagonal[a]] += half + stiffness;
-                values[self.diagonal[b]] += half + stiffness;
-                if !self.fixed[a] && !self.fixed[b] {
-                    values[self.next[i]] -= half * cosine[i] + stiffness;
-                }
-            }
-        }
-        for (j, &fixed) in self.fixed.iter().enumerate() {
-            // a straight free rod spins about itself at no cost; the torques of its edges sum to zero, so a trace of
-            // resistance fixes the spin at none
-            values[self.diagonal[j]] = if fixed {
-                1.0
-            } else {
-                values[self.diagonal[j]] * (1.0 + 1e-11)
-            };
-        }
-        self.n_factorisations += 1;
-        solver.factor()
-    }
-
-    fn build_pattern(&mut self, layout: &Layout) -> Result<(), SparseError> {
-        let joints = || {
-            let chains = layout.components().iter();
-            chains.flat_map(|chain| chain.interior().map(|i| (chain.edge_before(i), i)))
-        };
-        let n = layout.n_edges();
-        let pattern: Vec<(u32, u32)> = joints().map(|(a, b)| (a as u32, b as u32)).collect();
-        let solver = SparseCholesky::new(n, &pattern)?;
-        let slot = |a: usize, b: usize| solver.slot(a, b).unwrap_or_default();
-        self.diagonal = (0..n).map(|j| slot(j, j)).collect();
-        self.next = vec![0; layout.n_vertices()];
-        joints().for_each(|(a, b)| self.next[b] = slot(a, b));
-        self.solver = Some(solver);
-        Ok(())
-    }
-
-    /// Turns torques into rotation rates; entries of held edges come in as their prescribed rate.
-    pub fn solve(&mut self, layout: &Layout, cosine: &[f64], stiffness: f64, w: &mut [f64]) {
-        if self.fixed.iter().any(|&f| f) {
-            for (chain, stiffness) in stiffnesses(layout, stiffness) {
-                let half = 0.5 / chain.rest_length();
-                for i in chain.interior() {
-                    for (a, b) in [(chain.edge_before(i), i), (i, chain.edge_before(i))] {
-                        if self.fixed[a] && !self.fixed[b] {
-                            w[b] += (half * cosine[i] + stiffness) * w[a];
-                        }
-                    }
-                }
-            }
-        }
-        if let Some(solver) = self.solver.as_mut() {
-            solver.solve_in_place(w, 1);
-        }
-    }
-}
-
-/// Each component with its stiffness of a joint, by that of the first one.
-fn stiffnesses(layout: &Layout, first: f64) -> impl Iterator<Item = (&Chain, f64)> {
-    let chains = layout.components();
-    let rest_length = chains.first().map_or(0.0, Chain::rest_length);
-    let of = move |chain: &Chain| first * (rest_length / chain.rest_length());
-    chains.iter().map(move |chain| (chain, of(chain)))
 }

@@ -5,7 +5,7 @@ mod file;
 mod nematic;
 
 use crate::error::ViewError;
-pub use curves::{Curve, Moment, Snapshot, series, snapshots};
+pub use curves::{Curve, Moment, Snapshot, points_of, series, snapshots};
 pub use file::{read_csv, write};
 pub use nematic::{DefectLine, NematicSweep, Slice, rings, slices};
 use std::path::Path;

@@ -7,11 +7,13 @@ mod elastic_configurations;
 mod elastic_discharge;
 mod figure;
 mod knots_table;
+mod links_table;
 pub(crate) mod nematic;
 pub(crate) mod series;
 pub(crate) mod shapes;
 #[cfg(test)]
 mod tests;
+mod tight;
 
 pub use figure::{Context, Drawn, Figure};
 pub(crate) use nematic::profile_scale;
@@ -24,7 +26,7 @@ use std::path::Path;
 use std::time::Instant;
 
 /// Every figure, in the order of the gallery.
-pub const ALL: [Figure; 7] = [
+pub const ALL: [Figure; 8] = [
     elastic_configurations::FIGURE,
     elastic_charging::FIGURE,
     elastic_discharge::FIGURE,
@@ -32,6 +34,7 @@ pub const ALL: [Figure; 7] = [
     nematic::charging::FIGURE,
     nematic::discharge::FIGURE,
     knots_table::FIGURE,
+    links_table::FIGURE,
 ];
 
 /// A figure with its files written.

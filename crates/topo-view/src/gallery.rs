@@ -22,7 +22,21 @@ nav{display:flex;flex-wrap:wrap;gap:.3rem 1rem;margin:1rem 0 2rem}a{color:var(--
 img{display:block;width:100%;height:auto;background:#fff;border:1px solid var(--line);border-radius:6px}
 dl{background:var(--card);border-radius:6px;padding:.8rem 1rem;margin:1rem 0}dt{font-weight:600}dd{margin:0 0 .6rem}dd:last-child{margin:0}
 .claims li{margin:0 0 1rem}.claims p{margin:.1rem 0}.claims b{border-radius:4px;padding:0 .4rem;font-weight:600;border:1px solid var(--line)}.confirmed{background:#cfe8ff;color:#123}.partly{background:#fff0c2;color:#321}.not-confirmed{background:#ffd9cf;color:#311}
+.movie img{cursor:pointer}.movie button{font:inherit;color:inherit;background:var(--ground);border:1px solid var(--line);border-radius:5px;padding:.25rem .9rem;margin:.6rem 0;cursor:pointer}
 .files{color:var(--quiet)}table{border-collapse:collapse;display:block;overflow-x:auto}td{padding:.15rem .8rem .15rem 0;vertical-align:top;overflow-wrap:anywhere}td:first-child{white-space:nowrap;color:var(--quiet)}
+";
+
+/// A movie is loaded when it is to be played: before and after it stands still at its first frame.
+const MOVIES: &str = "
+for (const box of document.querySelectorAll('.movie')) {
+  const image = box.querySelector('img'), button = box.querySelector('button'), still = image.src;
+  const turn = () => {
+    const plays = button.textContent === 'Stop';
+    image.src = plays ? still : box.dataset.movie;
+    button.textContent = plays ? 'Play' : 'Stop';
+  };
+  for (const part of [image, button]) part.addEventListener('click', turn);
+}
 ";
 
 /// Writes `index.html` into the results folder: it opens from disk, small, and loads pictures and shapes beside it as they are seen.
@@ -31,6 +45,15 @@ pub fn write(results: &Path, shown: &Page<'_>) -> Result<(), ViewError> {
     for d in shown.done {
         let file = format!("figures/preview/{}.png", d.figure.name);
         data::write(&results.join(file), &d.preview)?;
+    }
+    for (m, _) in shown.movies {
+        let movie = results.join(format!("figures/{}.png", m.name));
+        let bytes = std::fs::read(&movie).map_err(|source| ViewError::File {
+            path: movie,
+            source,
+        })?;
+        let file = format!("figures/preview/{}.png", m.name);
+        data::write(&results.join(file), &movies::still(&bytes))?;
     }
     data::write(
         &results.join("index.html"),
@@ -87,6 +110,7 @@ fn page(results: &Path, shown: &Page<'_>, view: &str) -> String {
         (links(shown, view))
         @for d in shown.done { (figure(results, d)) }
         @for (m, finding) in shown.movies { (movie(results, m, finding)) }
+        @if !shown.movies.is_empty() { script { (PreEscaped(MOVIES)) } }
         (reproduction::section(shown.claims))
         (PreEscaped(view))
         section id="provenance" {
@@ -154,7 +178,10 @@ fn movie(results: &Path, movie: &Movie, finding: &str) -> Markup {
     html! {
         section id=(movie.name) {
             h2 { (movie.title) }
-            img alt=(movie.caption) loading="lazy" width=(movies::SIZE.width) height=(movies::SIZE.height) src=(file);
+            div.movie data-movie=(file) {
+                img alt=(movie.caption) loading="lazy" width=(movies::SIZE.width) height=(movies::SIZE.height) src={ "figures/preview/" (movie.name) ".png" };
+                button type="button" { "Play" }
+            }
             (said(movie.caption, movie.claim, finding))
             p.files {
                 "File: " a href=(file) { "animated PNG" }
@@ -181,3 +208,6 @@ fn said(caption: &str, claim: &str, finding: &str) -> Markup {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

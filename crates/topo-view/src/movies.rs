@@ -8,6 +8,9 @@ mod stage;
 
 use crate::data;
 use crate::error::ViewError;
+#[cfg(test)]
+pub(crate) use apng::encode;
+pub(crate) use apng::still;
 use stage::RATE;
 pub(crate) use stage::SIZE;
 pub use stage::{Clip, Movie, N_FRAMES, Stage};

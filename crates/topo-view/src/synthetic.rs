@@ -9,7 +9,9 @@ use nalgebra::Vector3;
 use std::f64::consts::TAU;
 use std::fmt::Write;
 use std::path::Path;
-use topo_analysis::table_bytes;
+use topo_analysis::{LinkRow, table_bytes};
+use topo_core::Polyline;
+use topo_knots::write_curves;
 
 const N: usize = 120;
 const LENGTH: f64 = 50.0;
@@ -43,6 +45,7 @@ pub fn results(folder: &Path, n_knots: usize, twists: &[f64]) {
         }
         assert_eq!(curve.len(), N);
     }
+    links(folder);
     let sweep = sweep.into_inner().unwrap();
     write(&folder.join("elastic/sweep.csv"), &sweep).unwrap();
     let rows = csv::Reader::from_reader(sweep.as_slice()).into_deserialize();
@@ -120,6 +123,7 @@ fn cut(knot: &str, k: usize, twist: f64, c: usize) -> Cut {
     Cut {
         case: format!("{knot}_twist{twist:+.2}_shrunk_n{N}"),
         knot: knot.to_owned(),
+        components: 1,
         twist,
         cut: 0.1 + 0.3 * c as f64,
         reading: "shrunk".to_owned(),
@@ -222,6 +226,45 @@ fn snapshots(cut: &Cut, curve: &[Vector3<f64>], density: impl Fn(usize) -> f64) 
         }
     }
     shots
+}
+
+/// Two tight rings, each through the other, and three that are apart.
+fn links(folder: &Path) {
+    let ring = |x: f64, upright: bool| {
+        let point = |i: usize| {
+            let (s, c) = (i as f64 / N as f64 * TAU).sin_cos();
+            match upright {
+                true => Vector3::new(x + 2.0 * c, 0.0, 2.0 * s),
+                false => Vector3::new(x + 2.0 * c, 2.0 * s, 0.0),
+            }
+        };
+        Polyline::new((0..N).map(point).collect(), true).unwrap()
+    };
+    let hopf = vec![ring(0.0, false), ring(2.0, true)];
+    let apart = (0..3).map(|k| ring(6.0 * k as f64, false)).collect();
+    let links: [(&str, Vec<Polyline>); 2] = [("L2a1", hopf), ("L6a4", apart)];
+    let mut table = csv::Writer::from_writer(Vec::new());
+    for (link, curves) in links {
+        let path = folder.join(format!("knots/{link}.vect"));
+        write_curves(&path, &curves).unwrap();
+        let reference = (link == "L2a1").then_some(25.1327);
+        let row = LinkRow {
+            link: link.to_owned(),
+            length_over_radius: 12.57 * curves.len() as f64,
+            reference,
+            excess_percent: reference.map(|_| 0.03),
+            residual: 0.01 * curves.len() as f64,
+            components: curves.len(),
+            vertices: N * curves.len(),
+            linking_numbers: if curves.len() == 2 { "1" } else { "0 -1 0" }.to_owned(),
+            struts: 240,
+            converged: curves.len() == 2,
+            ..LinkRow::default()
+        };
+        table.serialize(row).unwrap();
+    }
+    let table = table.into_inner().unwrap();
+    write(&folder.join("knots/links.csv"), &table).unwrap();
 }
 
 fn knot_row(knot: &str, k: usize) -> KnotRow {

@@ -54,6 +54,15 @@ pub struct SweepRow {
     /// Where friction reaches: as the reading says, contact, or a multiple of the contact diameter; empty without friction.
     #[serde(default)]
     pub friction_range: Option<String>,
+    /// Stiffness of the spring of the load per area, in E_b/h; empty without a load.
+    #[serde(default)]
+    pub load_spring: Option<f64>,
+    /// Length at which that spring is at rest, in h; empty without a load.
+    #[serde(default)]
+    pub load_rest_length: Option<f64>,
+    /// Resistance of the dashpot of the load per area, in η/h; empty without a load.
+    #[serde(default)]
+    pub load_dashpot: Option<f64>,
     /// Random perturbation of the start curve, in h.
     #[serde(default)]
     pub imperfection: f64,
@@ -100,6 +109,27 @@ pub struct SweepRow {
     pub t99_after_cut: Option<f64>,
     /// Time of the last change of the knot type to the unknot, in T_0; empty if not seen.
     pub t_untie: Option<f64>,
+    /// What the charge took, in E_0: the elastic energy of the fibre tied without twist, and the work of twisting it.
+    #[serde(default)]
+    pub energy_in: Option<f64>,
+    /// Work on the load by the end of the discharge, in E_0; empty without a load.
+    #[serde(default)]
+    pub work: Option<f64>,
+    /// Heat of the discharge, in E_0: what internal viscosity, twist viscosity and friction dissipated.
+    #[serde(default)]
+    pub heat: Option<f64>,
+    /// What its energy account leaves open, over the largest energy in it.
+    #[serde(default)]
+    pub residual: Option<f64>,
+    /// Largest power on the load in the mean over a step, in E_0/T_0; empty without a load.
+    #[serde(default)]
+    pub peak_power: Option<f64>,
+    /// `work` over `energy_in`; empty without a load.
+    #[serde(default)]
+    pub efficiency: Option<f64>,
+    /// Elastic energy after charging over the mass of the fibre, in E_b/ρ.
+    #[serde(default)]
+    pub energy_per_mass: Option<f64>,
     /// Largest |Δ(Tw + Wr)| while closed, in turns.
     pub link_drift: Option<f64>,
     /// Least distance of vertices of different strands over the contact diameter, charge and discharge.
@@ -133,7 +163,13 @@ impl SweepRow {
                     r.stretch_ratio,
                     r.imperfection,
                 ],
-                [r.contact_stiffness, r.friction_ratio],
+                [
+                    r.contact_stiffness,
+                    r.friction_ratio,
+                    r.load_spring,
+                    r.load_rest_length,
+                    r.load_dashpot,
+                ],
                 r.friction_range.clone(),
                 r.seed,
             )

@@ -1,6 +1,6 @@
 //! What a command will take, said before the work, and what it took.
 
-use super::order::{Order, links_used, more_knots};
+use super::order::{Order, knots_used, links_used};
 use crate::duration::{count, duration};
 use crate::error::CliError;
 use indicatif::DecimalBytes;
@@ -15,18 +15,18 @@ pub fn of_order(order: &Order, settings: &SweepSettings) -> Result<Vec<Stage>, C
     let mut stages = Vec::new();
     let table = order.table;
     let scene = ElasticScene::published(order.quality);
-    if (order.elastic || order.knots) && !order.as_is {
+    if (order.elastic || order.knots || order.links) && !order.as_is {
         let shapes = |names: &[String], tighten| {
             Estimate::of_shapes(names, table, tighten, order.results, order.jobs)
         };
-        let names = scene.knots_used(table)?;
-        let mut all = shapes(&names, &scene.tighten)?;
-        if order.knots {
-            let more = more_knots(order.quality, &names, table);
-            all = all.then(shapes(&more, &TightenSettings::standard())?);
-            let (links, out) = (links_used(order.quality), order.results);
-            all = all.then(Estimate::of_links(&links, &scene.tighten, out, order.jobs)?);
+        let mut all = Estimate::default();
+        if order.elastic || order.knots {
+            all = all.then(shapes(&scene.knots_used(table)?, &scene.tighten)?);
         }
+        let (_, more) = knots_used(order, &scene)?;
+        all = all.then(shapes(&more, &TightenSettings::standard())?);
+        let (links, out) = (links_used(order), order.results);
+        all = all.then(Estimate::of_links(&links, &scene.tighten, out, order.jobs)?);
         stages.push(Stage::shapes(all));
     }
     if order.elastic {
@@ -73,7 +73,7 @@ fn of_drawing(order: &Order) -> [Stage; 2] {
 }
 
 /// Processor seconds of figures and movies at draft quality on the models' machine.
-const DRAWING: [(&str, f64); 9] = [
+const DRAWING: [(&str, f64); 10] = [
     ("elastic-configurations", 22.0),
     ("elastic-charging", 3.0),
     ("elastic-discharge", 4.2),
@@ -81,6 +81,7 @@ const DRAWING: [(&str, f64); 9] = [
     ("nematic-charging", 5.0),
     ("nematic-discharge", 1.0),
     ("knots-table", 5.6),
+    ("links-table", 4.6),
     ("movie-elastic", 51.0),
     ("movie-nematic", 82.0),
 ];

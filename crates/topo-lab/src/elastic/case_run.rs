@@ -47,9 +47,16 @@ impl CaseInputs<'_> {
         settings: &DischargeSettings,
         hooks: &mut RunHooks<'_>,
     ) -> Result<Discharge, LabError> {
-        charged
-            .cut(site)
-            .and_then(|cut| cut.discharge(settings, hooks))
+        let settings = DischargeSettings {
+            load: self.case.load,
+            ..*settings
+        };
+        let opened = match self.scene.pull {
+            Some(_) => charged.let_go(),
+            None => charged.cut(site),
+        };
+        opened
+            .and_then(|cut| cut.discharge(&settings, hooks))
             .map_err(|source| self.refused(source))
     }
 }

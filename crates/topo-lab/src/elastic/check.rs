@@ -9,6 +9,7 @@ use topo_rod::{IntegratorKind, Reading, RodError};
 use super::case::ElasticCase;
 use super::cost::BYTES;
 use super::keys::{EDGES, ROD_KEYS};
+use super::rest::{RestKeys, TWIST};
 use super::scene::{BREAKS, ElasticScene};
 use crate::LabError;
 use crate::scene::{AxisValue, Document, check_count, product};
@@ -48,7 +49,13 @@ pub(super) fn faults(
         see(Err(document.wrong("rod.poisson_ratio", nu, remedy)));
     }
     let cases = inner_cases(scene);
-    for check in [check_imperfection, check_rod, check_memory, check_cuts] {
+    for check in [
+        check_imperfection,
+        check_rod,
+        check_memory,
+        check_cuts,
+        check_load,
+    ] {
         see(cases
             .iter()
             .try_for_each(|case| check(scene, case, document)));
@@ -64,7 +71,15 @@ pub(super) fn faults(
         see(si.checked().map(drop).map_err(wrong));
     }
     let has_twist = !scene.twists.is_empty();
+    if let Some(pull) = &scene.pull {
+        see(pull
+            .checked(has_twist)
+            .map_err(|e| refused_pull(document, e)));
+    }
     see(scene.discharge.checked(has_twist).map(drop).map_err(refuse));
+    if let Some(rest) = scene.rest.as_ref().filter(|rest| !rest.has_files()) {
+        see(rest.made().map(drop).map_err(|e| e.placed(document)));
+    }
     let closures = scene.timeline.closures;
     if closures > MOST_CLOSURES {
         let remedy = format!("at most {MOST_CLOSURES} closures of each sample are looked at");
@@ -189,6 +204,17 @@ fn check_cuts(
     }
 }
 
+fn check_load(
+    scene: &ElasticScene,
+    case: &ElasticCase,
+    document: &Document<'_>,
+) -> Result<(), LabError> {
+    let checked = case.load.map(|load| load.checked(&scene.discharge.ends));
+    checked.map_or(Ok(()), |checked| {
+        checked.map(drop).map_err(|e| refused(document, e))
+    })
+}
+
 /// Knots of the scene that its table does not have.
 pub(super) fn unknown_knots(scene: &ElasticScene, document: &Document<'_>) -> Vec<LabError> {
     let table = match scene.knot_table() {
@@ -209,11 +235,18 @@ pub(super) fn untied(scene: &ElasticScene, document: &Document<'_>) -> Option<La
     cases.err().map(|e| e.placed(document))
 }
 
+/// Why the natural shape of a file cannot be; where something is tied [`untied`] says so.
+pub(super) fn unrested(scene: &ElasticScene, document: &Document<'_>) -> Option<LabError> {
+    let rest = scene.rest.as_ref().filter(|rest| rest.has_files());
+    let made = rest.filter(|_| scene.tie.is_none())?.made();
+    made.err().map(|e| e.placed(document))
+}
+
 /// What the rod refuses, with the key of the scene.
 fn refused(document: &Document<'_>, error: RodError) -> LabError {
     match error {
         RodError::Value(wrong) => {
-            let tables = ["accuracy.", "charge.", "discharge."];
+            let tables = ["accuracy.", "charge.", "discharge.", "pull."];
             let key = match tables.iter().any(|table| wrong.name.starts_with(table)) {
                 true => wrong.name,
                 false => format!("rod.{}", wrong.name),
@@ -227,10 +260,33 @@ fn refused(document: &Document<'_>, error: RodError) -> LabError {
             let key = "discharge.ends";
             document.wrong(key, document.written(key), reason)
         }
+        RodError::Load { key, reason } => {
+            let key = if document.has(key) {
+                key
+            } else {
+                "discharge.load"
+            };
+            document.wrong(key, document.written(key), reason)
+        }
         source => LabError::Rod {
             case: document.path().display().to_string(),
             source,
         },
+    }
+}
+
+/// What the rod refuses of its pulling, with the key of the scene.
+fn refused_pull(document: &Document<'_>, error: RodError) -> LabError {
+    let grips = "pull.grips";
+    let wrong = |key: &str, reason: &str| document.wrong(key, document.written(key), reason);
+    match error {
+        RodError::Course { key, reason } => wrong(grips, &format!("`{key}`: {reason}")),
+        RodError::Ends { reason } => wrong(grips, reason),
+        RodError::Value(value) if value.name == "released" => wrong(
+            grips,
+            &format!("`released` = {}: expected {}", value.value, value.expected),
+        ),
+        error => refused(document, error),
     }
 }
 
@@ -261,6 +317,33 @@ pub(super) fn idle(scene: &ElasticScene) -> Vec<(&'static str, &'static str)> {
         "rod.poisson_ratio",
         "it changes nothing: no twist is modelled; give `twist`, or leave it out",
     );
+    unless(
+        !scene.twists.is_empty(),
+        TWIST,
+        "it changes nothing: no twist is modelled; give `twist`, or leave it out",
+    );
+    unless(
+        !scene.rest.as_ref().is_some_and(RestKeys::is_empty),
+        "rod.rest",
+        "it says nothing: give `curvature` or `twist`, or leave the table out",
+    );
+    unless(
+        scene.charge.twisting.is_none() || !scene.twists.is_empty(),
+        "charge.twisting",
+        "it changes nothing: no twist is modelled; give `twist`, or leave it out",
+    );
+    for key in [
+        "charge.duration",
+        "charge.twisting",
+        "charge.break",
+        "discharge.cuts",
+    ] {
+        unless(
+            scene.pull.is_none(),
+            key,
+            "it changes nothing: the fibre is open and pulled, neither charged nor cut; leave it out",
+        );
+    }
     let key = "rod.seed";
     unless(
         scene.timeline.closures > 0 || acts(key, &|c| c.imperfection > 0.0),

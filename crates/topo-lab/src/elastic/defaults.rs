@@ -35,3 +35,8 @@ pub(super) fn poisson_ratio_of(twist_ratio: f64) -> f64 {
         .find(|ratio| 1.0 / (1.0 + ratio) == twist_ratio)
         .unwrap_or(near)
 }
+
+/// Output times of a pull.
+pub(super) fn outputs() -> usize {
+    100
+}

@@ -30,8 +30,8 @@ use std::sync::OnceLock;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use topo_rod::{
-    Accuracy, Breaking, ChargeSettings, ContactParameters, DischargeSettings, Ends,
-    FrictionParameters, IntegratorKind, Reading, RodParameters,
+    Accuracy, Breaking, ChargeSettings, ContactParameters, DischargeSettings, EndLoad, Ends,
+    FrictionParameters, Grip, IntegratorKind, PullSettings, Reading, RodParameters, Twisting,
 };
 
 use super::case::ElasticCase;
@@ -39,6 +39,7 @@ use super::check;
 use super::choices::{Cuts, Names, by_preset};
 use super::defaults::{self, poisson_ratio_of};
 use super::keys::{EDGES, ROD_KEYS};
+use super::rest::{RestKeys, RestTable};
 use super::scene::{ElasticScene, OwnKnots};
 use super::si::Si;
 use super::tie::Word;
@@ -95,6 +96,8 @@ struct RodTable {
     contact: Option<ContactParameters>,
     /// Friction between strands; without the table none is modelled.
     friction: Option<FrictionParameters>,
+    /// Natural shape of the fibre; without the table it is straight and untwisted at rest.
+    rest: Option<RestTable>,
     /// Largest random displacement of the start curve.
     #[serde(default = "defaults::imperfection")]
     #[schemars(range(min = 0, max = 0.5), extend("x-unit" = "h"), example = 0.01)]
@@ -123,6 +126,8 @@ struct DischargeTable {
     closures: Option<usize>,
     /// What holds, moves or loads the ends of the open fibre.
     ends: Ends,
+    /// What takes up the work of the open fibre; without the table nothing does.
+    load: Option<EndLoad>,
 }
 
 /// How accurately a fibre is followed.
@@ -162,6 +167,24 @@ struct ChargeTable {
     /// The fibre breaks by itself, instead of being cut after the charge.
     #[serde(rename = "break")]
     breaking: Option<Breaking>,
+    /// Twisting in time between two relaxations; without the table the twist is tied in at once.
+    twisting: Option<Twisting>,
+}
+
+/// The pulling of an open fibre.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+struct PullTable {
+    /// How its first and last end are held, moved and loaded in time.
+    #[schemars(extend("examples" = [[{ "condition": "clamped" }, { "condition": "clamped", "displacement": [{ "to": 20.0, "over": 50.0 }, 0.0, 0.0] }]]))]
+    grips: [Grip; 2],
+    /// Duration.
+    #[schemars(extend("x-unit" = "T_0", "exclusiveMinimum" = 0), example = 60.0)]
+    duration: f64,
+    /// Output times, evenly spaced.
+    #[serde(default = "defaults::outputs")]
+    #[schemars(range(min = 1, max = 100_000), extend("x-unit" = "1"), example = 50)]
+    outputs: usize,
 }
 
 /// A scene of knotted fibres.
@@ -171,6 +194,8 @@ struct File {
     rod: RodTable,
     #[serde(default)]
     charge: ChargeTable,
+    /// Pulling of a fibre that is open, instead of charge and cut; without the table its ends are fused.
+    pull: Option<PullTable>,
     #[serde(default)]
     discharge: DischargeTable,
     /// What the fibre is made of, for tables in SI units; no result depends on it.
@@ -218,6 +243,8 @@ impl File {
                 friction: rod.friction,
                 ..RodParameters::default()
             },
+            rest: None,
+            load: self.discharge.load,
             imperfection: rod.imperfection,
             seed: rod.seed,
         }
@@ -231,12 +258,13 @@ impl File {
     ) -> Result<ElasticScene, LabError> {
         let ElasticCase {
             rod,
+            load,
             imperfection,
             seed,
             ..
         } = self.case();
         let path = document.path();
-        let (knots, tie) = self.rod.tie(document)?;
+        let (knots, tie) = self.rod.tie(document, self.pull.is_some())?;
         let (asked, goal) = self
             .accuracy
             .with_budget(self.budget.as_deref())
@@ -245,19 +273,30 @@ impl File {
         let (accuracy, discharge) = (standard.accuracy, standard.discharge);
         let run = self.discharge;
         let beside = path.parent().unwrap_or(Path::new("")).to_owned();
+        let rest = self
+            .rod
+            .rest
+            .map(|table| RestKeys::new(table, beside.clone()));
         Ok(ElasticScene {
             folder: folder_of(path)?,
             knots,
             tie,
             twists,
             rod,
+            rest,
             imperfection,
             seed,
             charge: ChargeSettings {
                 duration: self.charge.duration.unwrap_or(standard.charge.duration),
                 breaking: self.charge.breaking,
+                twisting: self.charge.twisting,
                 ..standard.charge
             },
+            pull: self.pull.map(|pull| PullSettings {
+                grips: pull.grips,
+                duration: pull.duration,
+                outputs: pull.outputs,
+            }),
             cuts: run.cuts.unwrap_or(standard.cuts),
             discharge: DischargeSettings {
                 until_released: run.until_released.unwrap_or(discharge.until_released),
@@ -265,6 +304,7 @@ impl File {
                 ends: run.ends,
                 ..discharge
             },
+            load,
             timeline: TimelineSettings {
                 closures: run.closures.unwrap_or(standard.timeline.closures),
                 ..standard.timeline
@@ -326,6 +366,7 @@ impl ElasticScene {
                 faults.extend(check::unknown_knots(&scene, document));
                 if faults.is_empty() {
                     faults.extend(check::untied(&scene, document));
+                    faults.extend(check::unrested(&scene, document));
                 }
                 faults
             }
@@ -356,19 +397,27 @@ impl ElasticScene {
                 stretch_ratio: rod.stretch_ratio,
                 contact: rod.contact,
                 friction: rod.friction,
+                rest: self.rest.as_ref().map(RestKeys::table),
                 imperfection: self.imperfection,
                 seed: self.seed,
             },
             charge: ChargeTable {
                 duration: Some(self.charge.duration),
                 breaking: self.charge.breaking,
+                twisting: self.charge.twisting,
             },
+            pull: self.pull.clone().map(|pull| PullTable {
+                grips: pull.grips,
+                duration: pull.duration,
+                outputs: pull.outputs,
+            }),
             discharge: DischargeTable {
                 cuts: Some(self.cuts.clone()),
                 until_released: Some(self.discharge.until_released),
                 longest: Some(self.discharge.longest),
                 closures: Some(self.timeline.closures),
                 ends: self.discharge.ends,
+                load: self.load,
             },
             si: self.si,
             accuracy: GoalOr::Settings(AccuracyTable {

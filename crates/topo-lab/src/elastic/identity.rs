@@ -21,6 +21,9 @@ pub(crate) fn fingerprint(scene: &ElasticScene, case: &ElasticCase, entry: &Entr
     if starts_from_two_images(scene, case, entry) {
         all["images"] = 2.into();
     }
+    if let Some(pull) = &scene.pull {
+        all["pull"] = json!(pull);
+    }
     if let Some(cuts) = &scene.fixed_cuts {
         all["fixed_cuts"] = json!(cuts.get(&case.state()));
     }
@@ -48,21 +51,28 @@ pub(super) fn settings_of(scene: &ElasticScene, case: &ElasticCase) -> serde_jso
         scene.accuracy,
         fixed
     ]);
-    if let (Some(all), false) = (all.as_array_mut(), scene.own_terms.is_empty()) {
-        all.push(json!(scene.own_terms));
+    if let Some(all) = all.as_array_mut() {
+        if !scene.own_terms.is_empty() {
+            all.push(json!(scene.own_terms));
+        }
+        if scene.pull.is_some() {
+            all.push(json!(scene.pull));
+        }
     }
     all
 }
 
-/// Whether a twisted rod may start from the tight curve or from its mirror image, being the same knot. One that may break by itself
-/// starts from the curve alone, as energies of two rods that broke at two times say nothing about which to keep.
+/// Whether a rod that is twisted, or not its own mirror image at rest, may start from the tight curve or from its mirror image, being
+/// the same knot. One that may break by itself starts from the curve alone, as energies of two rods that broke at two times say
+/// nothing about which to keep.
 pub(super) fn starts_from_two_images(
     scene: &ElasticScene,
     case: &ElasticCase,
     entry: &Entry,
 ) -> bool {
     let is_twisted = case.rod.twist.is_some_and(|twist| twist != 0.0);
-    is_twisted
+    let has_hand = is_twisted || case.rest.as_ref().is_some_and(|rest| rest.is_chiral());
+    has_hand
         && scene.charge.breaking.is_none()
         && entry.is_amphichiral_knot()
         && case.is_tightened()

@@ -1,6 +1,6 @@
 //! The keys of a rod that may have several values, in the order in which cases run through them.
 
-use topo_rod::{ContactParameters, FrictionParameters, FrictionRange};
+use topo_rod::{ContactParameters, EndLoad, FrictionParameters, FrictionRange};
 
 use super::case::ElasticCase;
 use super::defaults::poisson_ratio_of;
@@ -14,8 +14,12 @@ fn friction(case: &mut ElasticCase) -> &mut FrictionParameters {
     case.rod.friction.get_or_insert_default()
 }
 
+fn load(case: &mut ElasticCase) -> &mut EndLoad {
+    case.load.get_or_insert_default()
+}
+
 /// Knots run slowest, then twists, then these; the last one runs fastest.
-pub(crate) const ROD_KEYS: [SweptKey<ElasticCase>; 11] = [
+pub(crate) const ROD_KEYS: [SweptKey<ElasticCase>; 14] = [
     SweptKey {
         key: "rod.slenderness",
         access: Access::Number(|c| Some(c.rod.slenderness), |c, x| c.rod.slenderness = x),
@@ -92,6 +96,21 @@ pub(crate) const ROD_KEYS: [SweptKey<ElasticCase>; 11] = [
         access: Access::Whole(|c| Some(c.seed), |c, n| c.seed = n),
     },
     SweptKey {
+        key: "discharge.load.spring",
+        access: Access::Number(|c| c.load.map(|l| l.spring), |c, x| load(c).spring = x),
+    },
+    SweptKey {
+        key: "discharge.load.rest_length",
+        access: Access::Number(
+            |c| c.load.map(|l| l.rest_length),
+            |c, x| load(c).rest_length = x,
+        ),
+    },
+    SweptKey {
+        key: "discharge.load.dashpot",
+        access: Access::Number(|c| c.load.map(|l| l.dashpot), |c, x| load(c).dashpot = x),
+    },
+    SweptKey {
         key: EDGES,
         access: Access::Whole(
             |c| Some(c.rod.n_edges as u64),
@@ -112,7 +131,7 @@ mod tests {
     use super::*;
 
     /// A scene with all keys.
-    const FULL: &str = "knots = \"own\"\n[rod]\nknot = \"3_1\"\ntwist = 1.0\n[rod.contact]\n[rod.friction]\nrange = { times-contact = 1.1 }\n[accuracy]\nintegrator = \"ros2w\"\n";
+    const FULL: &str = "knots = \"own\"\n[rod]\nknot = \"3_1\"\ntwist = 1.0\n[rod.contact]\n[rod.friction]\nrange = { times-contact = 1.1 }\n[discharge.load]\ndashpot = 0.5\n[accuracy]\nintegrator = \"ros2w\"\n";
 
     /// Numbers of a scene that have one value only, and why.
     const ONE_VALUE: [(&str, &str); 9] = [

@@ -1,11 +1,12 @@
 //! What tells the cases of elastic scenes apart: the names of their folders and the settings in their rows.
 
 use serde_json::json;
-use topo_rod::{FrictionRange, Reading, RodParameters};
+use topo_rod::{EndLoad, FrictionRange, Reading, RodParameters};
 
 use super::case::ElasticCase;
 use super::identity::settings_of;
 use super::own_term::OwnTerm;
+use super::rest::RestKeys;
 use super::scene::{ElasticScene, OwnKnots};
 use super::tie::Tie;
 use crate::preset::Preset;
@@ -45,6 +46,16 @@ impl ElasticScene {
             ..usual.rod.clone()
         };
         let name = name.changes(&value(rod), &value(&said), &[]);
+        let rest = case.rest.as_ref().map_or(json!({}), |rest| rest.said());
+        let name = name.changes(&json!({ "rest": rest }), &json!({ "rest": {} }), &[]);
+        let name = match case.load {
+            Some(load) => name.changes(
+                &json!({ "load": load }),
+                &json!({ "load": EndLoad::default() }),
+                &[],
+            ),
+            None => name,
+        };
         let labels = self.own_terms.iter().map(OwnTerm::label);
         labels
             .fold(name, |name, label| name.word(label))
@@ -79,6 +90,9 @@ impl ElasticScene {
                 FrictionRange::Contact => "contact".to_owned(),
                 FrictionRange::TimesContact(x) => x.to_string(),
             }),
+            load_spring: case.load.map(|l| l.spring),
+            load_rest_length: case.load.map(|l| l.rest_length),
+            load_dashpot: case.load.map(|l| l.dashpot),
             imperfection: case.imperfection,
             seed: case.seed,
             tolerance: self.accuracy.tolerance,
@@ -95,6 +109,7 @@ impl ElasticScene {
             goal: None,
             own_knots: own_knots.as_deref().map(OwnKnots::at),
             tie: self.tie.as_ref().map(Tie::found_from_anywhere),
+            rest: self.rest.as_ref().map(RestKeys::found_from_anywhere),
             ..self.clone()
         };
         let labels = self.own_terms.iter().map(OwnTerm::label);
@@ -128,6 +143,9 @@ impl Row for SweepRow {
             contact_stiffness: blank.contact_stiffness,
             friction_ratio: blank.friction_ratio,
             friction_range: blank.friction_range,
+            load_spring: blank.load_spring,
+            load_rest_length: blank.load_rest_length,
+            load_dashpot: blank.load_dashpot,
             imperfection: blank.imperfection,
             seed: blank.seed,
             tolerance: blank.tolerance,

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 use serde_json::json;
-use topo_rod::{ChargedRod, Guards, RodBattery, RodSample, RodState};
+use topo_rod::{ChargedRod, GripForce, Guards, RodBattery, RodSample, RodState};
 
 use super::case_run::{CaseInputs, CutResults};
 use super::observable::{Observable, further};
@@ -51,6 +51,9 @@ struct SnapshotVertex {
     twist: f64,
 }
 
+/// A cell of a column that only some tables have.
+type Cell = Option<Option<f64>>;
+
 /// The open or closed rod at an output time.
 #[derive(Default, Serialize)]
 pub(super) struct SeriesRow<'a> {
@@ -67,6 +70,24 @@ pub(super) struct SeriesRow<'a> {
     dissipated_twist: f64,
     dissipated_friction: f64,
     work: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    work_load: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    grip0_fx: Cell,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    grip0_fy: Cell,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    grip0_fz: Cell,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    grip0_torque: Cell,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    grip1_fx: Cell,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    grip1_fy: Cell,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    grip1_fz: Cell,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    grip1_torque: Cell,
     writhe: f64,
     total_twist: f64,
     n_contacts: usize,
@@ -81,8 +102,16 @@ fn series_row<'a>(
     s: &RodSample,
     timeline: Option<(&'a Timeline, usize)>,
     observables: &[Observable],
+    has_grips: bool,
 ) -> SeriesRow<'a> {
     let typed = timeline.and_then(|(t, k)| t.at(k));
+    let grip = |end: usize, k: usize| -> Cell {
+        let part = |grip: &GripForce| match k {
+            3 => grip.torque,
+            _ => grip.force[k],
+        };
+        has_grips.then(|| s.grips[end].as_ref().map(part))
+    };
     SeriesRow {
         cut,
         time: s.time,
@@ -96,6 +125,15 @@ fn series_row<'a>(
         dissipated_twist: s.dissipated[1],
         dissipated_friction: s.dissipated[2],
         work: s.work,
+        work_load: s.load_work,
+        grip0_fx: grip(0, 0),
+        grip0_fy: grip(0, 1),
+        grip0_fz: grip(0, 2),
+        grip0_torque: grip(0, 3),
+        grip1_fx: grip(1, 0),
+        grip1_fy: grip(1, 1),
+        grip1_fz: grip(1, 2),
+        grip1_torque: grip(1, 3),
         writhe: s.writhe,
         total_twist: s.total_twist,
         n_contacts: s.n_contacts,
@@ -131,18 +169,19 @@ pub(super) fn write_case(made: &CaseResults<'_>, place: &Place<'_>) -> Result<()
         outcome,
         charge_seconds,
     } = *made;
-    let observables = &inputs.scene.observables;
+    let (scene, observables) = (inputs.scene, &inputs.scene.observables);
+    let has_grips = !scene.discharge.ends.is_free();
     let mut folder = place.open()?;
     folder.table("charged.csv", &charged_vertices(charged))?;
     let samples = &charged.record().samples;
     let series: Vec<_> = samples
         .iter()
-        .map(|s| series_row(None, s, None, observables))
+        .map(|s| series_row(None, s, None, observables, scene.pull.is_some()))
         .collect();
     folder.table("charge.csv", &series)?;
     let series: Vec<_> = runs
         .iter()
-        .flat_map(|run| run_series(run, observables))
+        .flat_map(|run| run_series(run, observables, has_grips))
         .collect();
     folder.table("series.csv", &series)?;
     let snapshots: Vec<_> = runs
@@ -203,10 +242,19 @@ fn charged_vertices(charged: &ChargedRod) -> Vec<ChargedVertex> {
 fn run_series<'a>(
     run: &'a CutResults,
     observables: &'a [Observable],
+    has_grips: bool,
 ) -> impl Iterator<Item = SeriesRow<'a>> {
     let (discharge, timeline) = (&run.discharge, &run.timeline);
     let samples = discharge.record.samples.iter().enumerate();
-    samples.map(move |(k, s)| series_row(Some(run.cut), s, Some((timeline, k)), observables))
+    samples.map(move |(k, s)| {
+        series_row(
+            Some(run.cut),
+            s,
+            Some((timeline, k)),
+            observables,
+            has_grips,
+        )
+    })
 }
 
 fn run_snapshots(battery: &RodBattery, run: &CutResults) -> Vec<SnapshotVertex> {

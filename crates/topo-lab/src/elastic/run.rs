@@ -36,7 +36,9 @@ pub(crate) struct ChargedCase {
 /// The tight curve of an amphichiral knot need not be its own mirror image, as that of 6_3, and a rod so tightly tied stays
 /// in the one of the two minima that it starts from. The image that stores less under the twist of the case is taken, so
 /// that the energy of such a knot does not depend on the sign of the twist. The other image stores what the one kept would
-/// under the opposite twist: how far a single curve sees the sign is the difference of the two energies.
+/// under the opposite twist: how far a single curve sees the sign is the difference of the two energies. A natural shape is that of the
+/// fibre, whichever image it is tied along: one with a hand is charged from both images without twist too, and the energy of the other
+/// is that of the mirrored shape.
 ///
 /// The mirror image of a knot starts from the mirror image of its start curve, imperfections included, so that at the opposite
 /// twist all of its run is the mirror image of the knot's.
@@ -59,8 +61,15 @@ pub(crate) fn charge(
     let refuse = |source| inputs.refused(source);
     let entry = case.entry(table)?;
     let centrelines = start.centrelines()?;
-    let battery = RodBattery::link(&case.rod, &scene.accuracy, Guards::default(), &centrelines);
+    let (rod, accuracy, guards) = (&case.rod, &scene.accuracy, Guards::default());
+    let battery = match &scene.pull {
+        Some(_) => RodBattery::open(rod, accuracy, guards, &centrelines[0]),
+        None => RodBattery::link(rod, accuracy, guards, &centrelines),
+    };
     let mut battery = battery.map_err(refuse)?;
+    if let Some(rest) = &case.rest {
+        battery = rest.of(battery).map_err(refuse)?;
+    }
     for term in &scene.own_terms {
         battery = term.added_to(battery).map_err(refuse)?;
     }
@@ -77,7 +86,10 @@ pub(crate) fn charge(
         if let Some(paths) = kept {
             hooks.keep_in(paths[image]);
         }
-        battery.charge(&scene.charge, hooks).map_err(refuse)
+        match &scene.pull {
+            Some(pull) => battery.pull(pull, hooks).map_err(refuse),
+            None => battery.charge(&scene.charge, hooks).map_err(refuse),
+        }
     };
     let charged = from(&battery, 0)?;
     if !starts_from_two_images(scene, case, &entry) {
@@ -316,6 +328,8 @@ fn charged_row(inputs: &CaseInputs<'_>, charged: &ChargedRod) -> SweepRow {
     };
     if let Some(last) = record.samples.last() {
         row.energy = last.elastic();
+        row.energy_in = charged.energy_in();
+        row.energy_per_mass = Some(topo_core::energy_per_mass(row.energy));
         row.bend = last.stored.of("bend");
         row.twist_energy = last.stored.of("twist");
         row.stretch = last.stored.of("stretch");
@@ -366,6 +380,11 @@ fn found(
     }
 }
 
+/// Work on the load over what the charge took; none where either is not there.
+fn efficiency(energy_in: Option<f64>, work: Option<f64>) -> Option<f64> {
+    Some(work? / energy_in.filter(|e| *e > 0.0)?)
+}
+
 fn discharge_row(base: &SweepRow, run: &CutResults, cpu_seconds: f64) -> SweepRow {
     let report = &run.discharge.record.report;
     let at = |times: &DischargeTimes, share| times.at(share).map(|t| t.value);
@@ -382,6 +401,11 @@ fn discharge_row(base: &SweepRow, run: &CutResults, cpu_seconds: f64) -> SweepRo
         t95_after_cut: at(after_cut, 0.95),
         t99_after_cut: at(after_cut, 0.99),
         t_untie: run.timeline.untying_time(),
+        work: report.own.load.map(|load| load.work),
+        heat: run.discharge.heat(),
+        residual: Some(report.ledger_residual),
+        peak_power: report.own.load.map(|load| load.peak_power),
+        efficiency: efficiency(base.energy_in, report.own.load.map(|load| load.work)),
         min_distance_over_contact: base
             .min_distance_over_contact
             .into_iter()

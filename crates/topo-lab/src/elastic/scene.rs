@@ -7,7 +7,10 @@ use std::sync::Arc;
 use serde::Serialize;
 use topo_knots::{KnotTable, TightenSettings};
 use topo_rod::energy::EnergyTerm;
-use topo_rod::{Accuracy, ChargeSettings, DischargeSettings, RodParameters, RodSample, RodState};
+use topo_rod::{
+    Accuracy, ChargeSettings, DischargeSettings, EndLoad, PullSettings, RodParameters, RodSample,
+    RodState,
+};
 
 use super::case::ElasticCase;
 use super::choices::Cuts;
@@ -15,6 +18,7 @@ use super::defaults;
 use super::keys::{EDGES, ROD_KEYS};
 use super::observable::Observable;
 use super::own_term::OwnTerm;
+use super::rest::RestKeys;
 use super::si::Si;
 use super::tie::Tie;
 use super::tied::Tied;
@@ -38,16 +42,25 @@ pub struct ElasticScene {
     pub twists: Vec<f64>,
     /// Material, reading and resolution, its twist not yet set.
     pub rod: RodParameters,
+    /// Natural shape of the fibres, if it is not straight and untwisted.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rest: Option<RestKeys>,
     /// Size of the random perturbation of the start curve, in h: symmetric states that are unstable are left by it.
     pub imperfection: f64,
     /// Seed of that perturbation and of the closures.
     pub seed: u64,
     /// Relaxation of the closed rod.
     pub charge: ChargeSettings,
+    /// Pulling of an open fibre, instead of the charge of a closed one and its cuts.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pull: Option<PullSettings>,
     /// Sites cut.
     pub cuts: Cuts,
     /// Discharge of the open rod.
     pub discharge: DischargeSettings,
+    /// What takes up the work of the discharge of a case that has no other.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub load: Option<EndLoad>,
     /// Knot types while open.
     pub timeline: TimelineSettings,
     /// Integrator and tolerance.
@@ -114,6 +127,9 @@ impl ElasticCase {
         if let Some(tied) = &self.tied {
             name = format!("{name} {}", tied.word);
         }
+        if let Some(rest) = &self.rest {
+            name.push_str(&format!(" rest={}", rest.said()));
+        }
         let published = ElasticScene::published(Preset::default()).case(&self.knot, None);
         for key in ROD_KEYS.iter().filter(|key| key.key != EDGES) {
             match key.read(self) {
@@ -144,11 +160,14 @@ impl ElasticScene {
                 n_edges: preset.edges(),
                 ..RodParameters::default()
             },
+            rest: None,
             imperfection: defaults::imperfection(),
             seed: defaults::seed(),
             charge: ChargeSettings::default(),
+            pull: None,
             cuts: preset.cuts(),
             discharge: DischargeSettings::default(),
+            load: None,
             timeline: TimelineSettings::default(),
             accuracy: preset.accuracy(),
             axes: Vec::new(),
@@ -176,7 +195,7 @@ impl ElasticScene {
     ///
     /// # Errors
     /// An unknown knot, or one that is there twice, be it by an alias or besides \"all\"; curves that cannot be read or leave no room
-    /// for the fibre.
+    /// for the fibre; a natural shape that cannot be read.
     pub fn cases(&self, table: &KnotTable) -> Result<Vec<ElasticCase>, LabError> {
         let mut names: Vec<String> = Vec::new();
         let mut seen = HashSet::new();
@@ -199,9 +218,11 @@ impl ElasticScene {
         } else {
             self.twists.iter().copied().map(Some).collect()
         };
+        let rest = self.rest.as_ref().map(RestKeys::made).transpose()?;
         let of = |knot: &str, tied: Option<&Arc<Tied>>| -> Vec<ElasticCase> {
             let case = |t: &Option<f64>| ElasticCase {
                 tied: tied.cloned(),
+                rest: rest.cloned(),
                 ..self.case(knot, *t)
             };
             let twisted = twists.iter().map(case);
@@ -237,6 +258,8 @@ impl ElasticScene {
                 twist,
                 ..self.rod.clone()
             },
+            rest: None,
+            load: self.load,
             imperfection: self.imperfection,
             seed: self.seed,
         }

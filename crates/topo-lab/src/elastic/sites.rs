@@ -39,6 +39,10 @@ impl Chosen {
 /// Where the scene cuts the rod; nowhere if it should have broken by itself and did not.
 pub(super) fn sites(inputs: &CaseInputs<'_>, charged: &ChargedRod) -> Vec<Chosen> {
     let CaseInputs { scene, case, .. } = *inputs;
+    if scene.pull.is_some() {
+        // its ends are there
+        return vec![Chosen::given(&0.0)];
+    }
     if let Some(fixed) = &scene.fixed_cuts {
         let places = fixed.get(&case.state());
         return places.into_iter().flatten().map(Chosen::given).collect();

@@ -35,6 +35,9 @@ pub(super) enum Word {
 pub struct Tie {
     pub(super) what: What,
     pub(super) tighten: bool,
+    /// Whether the curve is open and its ends are pulled.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    is_pulled: bool,
     /// What it comes to, once it has been made.
     #[serde(skip)]
     made: Arc<OnceLock<Vec<Arc<Tied>>>>,
@@ -61,7 +64,7 @@ pub(super) enum What {
 /// What was made before is no part of it.
 impl PartialEq for Tie {
     fn eq(&self, other: &Self) -> bool {
-        (&self.what, self.tighten) == (&other.what, other.tighten)
+        (&self.what, self.tighten, self.is_pulled) == (&other.what, other.tighten, other.is_pulled)
     }
 }
 
@@ -73,7 +76,7 @@ const MEASURED: [usize; 2] = [200, 8];
 const ROUNDING: f64 = 1e-9;
 
 /// The refusal of a key's value.
-fn wrong(key: &str, value: impl Display, remedy: impl Display) -> LabError {
+pub(super) fn wrong(key: &str, value: impl Display, remedy: impl Display) -> LabError {
     let fault = SceneFault::of_file(
         Path::new("the scene"),
         value.to_string(),
@@ -89,9 +92,15 @@ impl Tie {
         let tie = Self {
             tighten: tighten.unwrap_or(usual),
             what,
+            is_pulled: false,
             made: Arc::default(),
         };
         (tie.what != What::Knots || !tie.tighten).then_some(tie)
+    }
+
+    /// The same of an open curve whose ends are pulled, or of closed ones.
+    pub(super) fn pulled(self, is_pulled: bool) -> Self {
+        Self { is_pulled, ..self }
     }
 
     /// What a file says of `tighten`, if it is not the usual choice.
@@ -209,12 +218,19 @@ impl Tie {
 
     fn of_file(&self, path: &Path, table: &KnotTable) -> Result<Tied, String> {
         let components = read_components(path).map_err(|e| e.to_string())?;
+        if self.is_pulled && components.len() > 1 {
+            return Err(format!(
+                "it has {} components: one fibre is pulled, give the curve of one",
+                components.len()
+            ));
+        }
         let mut vertices = Vec::new();
         for (k, component) in components.iter().enumerate() {
-            closed(component).map_err(|problem| match components.len() {
-                1 => format!("the curve {problem}"),
-                _ => format!("component {} {problem}", k + 1),
-            })?;
+            self.fits(component)
+                .map_err(|problem| match components.len() {
+                    1 => format!("the curve {problem}"),
+                    _ => format!("component {} {problem}", k + 1),
+                })?;
             vertices.push(component.vertices.clone());
         }
         let entry = match &vertices[..] {
@@ -225,7 +241,7 @@ impl Tie {
         let coordinates = identity(&serde_json::json!(vertices));
         let word = format!("curve-{}", digits(&coordinates));
         let curves = vertices.into_iter().map(|x| {
-            let curve = Polyline::new(x, true)?;
+            let curve = Polyline::new(x, !self.is_pulled)?;
             match curve.n_vertices() > MOST_VERTICES {
                 true => curve.resampled(MOST_VERTICES),
                 false => Ok(curve),
@@ -241,6 +257,15 @@ impl Tie {
                 Ok(tied)
             }
             false => laid(name, word, Some(coordinates), entry.without_start(), curves),
+        }
+    }
+
+    /// Refuses a component that is not closed, or of a pulled curve one that is not open.
+    fn fits(&self, component: &CurveComponent) -> Result<(), String> {
+        match (self.is_pulled, component.is_closed()) {
+            (true, true) => Err("is closed and has no ends to pull: give an open curve, or leave the table [pull] out".to_owned()),
+            (true, false) => Ok(()),
+            (false, _) => closed(component),
         }
     }
 
@@ -261,11 +286,11 @@ impl Tie {
 }
 
 /// Digits of an identity that a name has.
-fn digits(identity: &str) -> &str {
+pub(super) fn digits(identity: &str) -> &str {
     identity.get(..10).unwrap_or(identity)
 }
 
-fn quoted(name: &str) -> String {
+pub(super) fn quoted(name: &str) -> String {
     format!("\"{name}\"")
 }
 
@@ -283,7 +308,7 @@ fn closed(component: &CurveComponent) -> Result<(), String> {
         return Ok(());
     }
     Err(format!(
-        "is open, its ends {:.1} times its longest edge apart; a fibre is fused before it is charged: give a closed curve (in a VECT file a negative number of vertices, else the first vertex again at the end)",
+        "is open, its ends {:.1} times its longest edge apart; a fibre is fused before it is charged: give a closed curve (in a VECT file a negative number of vertices, else the first vertex again at the end), or say how its ends are pulled in a table [pull]",
         component.gap_over_longest_edge()
     ))
 }
@@ -306,7 +331,11 @@ fn laid(
         n_edges: MEASURED[0].max(MEASURED[1] * centrelines.len()),
         ..RodParameters::default()
     };
-    let battery = RodBattery::link(&rod, &Accuracy::default(), Guards::default(), &centrelines);
+    let (accuracy, guards) = (Accuracy::default(), Guards::default());
+    let battery = match &centrelines[..] {
+        [open] if !open.is_closed() => RodBattery::open(&rod, &accuracy, guards, open),
+        closed => RodBattery::link(&rod, &accuracy, guards, closed),
+    };
     let length_over_radius = battery.map_err(|e| e.to_string())?.ropelength();
     let word = match &coordinates {
         Some(_) => word,

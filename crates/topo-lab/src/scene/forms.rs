@@ -177,7 +177,7 @@ impl Walk<'_> {
     fn unknown(&self, table: &str, name: &str, node: &Value) -> String {
         let names: Vec<&str> = properties(node).map(|(known, _)| known).collect();
         let place = match table {
-            "" => "a scene has no such key".to_owned(),
+            "" => "there is no such key".to_owned(),
             table => format!("[{table}] has no such key"),
         };
         let quoted: Vec<String> = names.iter().map(|known| format!("`{known}`")).collect();

@@ -13,7 +13,7 @@ import numpy as np
 
 from . import _topo, table
 from .errors import refuse
-from .rods import Observer, Run, _file, _given, _Here
+from .rods import Observer, Run, _Battery, _Discharge, _file, _given, _Here
 
 if TYPE_CHECKING:
     from .table import Table
@@ -23,17 +23,18 @@ if TYPE_CHECKING:
 class Fields:
     """A nematic on its grid; the arrays are views into memory that was made once."""
 
-    #: Largest eigenvalue of Q (nx, ny, nz).
     order: np.ndarray
-    #: Director with n_z >= 0 (nx, ny, nz, 3).
+    """Largest eigenvalue of Q (nx, ny, nz)."""
     director: np.ndarray
-    #: Five components of Q (nx, ny, nz, 5).
+    """Director with n_z >= 0 (nx, ny, nz, 3)."""
     q_tensor: np.ndarray
-    #: Whether a cell lies in the fluid (nx, ny, nz).
+    """Five components of Q (nx, ny, nz, 5)."""
     fluid: np.ndarray
-    #: Centre of the first cell relative to the particle's, and distance of neighbours.
+    """Whether a cell lies in the fluid (nx, ny, nz)."""
     origin: list[float]
+    """Centre of the first cell relative to the particle's, in ξ_N."""
     spacing: float
+    """Distance of neighbours, in ξ_N."""
 
     @classmethod
     def _of(cls, said: dict) -> Fields:
@@ -52,37 +53,46 @@ class Fields:
 class Ring:
     """The defect ring around a particle."""
 
-    #: Mean distance from the axis, and mean height, in ξ_N.
     radius: float
+    """Mean distance from the axis, in ξ_N."""
     height: float
-    #: The strongest mode of the height, its amplitude, and the amplitudes of all modes 1, 2, ...
+    """Mean height, in ξ_N."""
     mode: int
+    """The strongest mode of the height."""
     amplitude: float
+    """Its amplitude, in ξ_N."""
     modes: np.ndarray = field(repr=False)
-    #: Its line (128, 3).
+    """The amplitudes of all modes 1, 2, ..."""
     points: np.ndarray = field(repr=False)
+    """Its line (128, 3)."""
 
 
 @dataclass
-class ColloidDischarge(Run):
+class ColloidDischarge(_Discharge, Run):
     """The discharge of a switched colloid. Released shares count down to the energy of equilibrium. It can be pickled."""
 
-    #: Energy after the switch, what the switch removed, that of equilibrium, and what could be released, in L ξ_N.
     start: float
+    """Energy after the switch, in L ξ_N."""
     removed: float
+    """What the switch removed, in L ξ_N."""
     final: float
+    """Energy of equilibrium, in L ξ_N."""
     final_source: str
+    """Where that is known from."""
     stored: float | None
+    """What could be released, in L ξ_N."""
     times: list[tuple[float, float | None]]
-    #: At output times: time, energy, order_parameter, ring_radius, max_speed, flow_correlation.
+    """Shares with the times at which they were released, in τ_N."""
     samples: list[dict[str, float | None]]
-    #: Times with the points of the ring (128, 3), while there is one.
+    """At output times: time, energy, order_parameter, ring_radius, max_speed, flow_correlation."""
     rings: list[tuple[float, np.ndarray]]
-    #: Largest speed, in ξ_N/τ_N; ``None`` without flow.
+    """Times with the points of the ring (128, 3), while there is one."""
     max_speed: float | None
-    #: The last state.
+    """Largest speed, in ξ_N/τ_N; ``None`` without flow."""
     fields: Fields
+    """The last state."""
     radius: float
+    """Of the particle, in ξ_N."""
 
     @property
     def series(self) -> Table:
@@ -91,32 +101,10 @@ class ColloidDischarge(Run):
         columns = {n: np.array([np.nan if s[n] is None else s[n] for s in self.samples], float) for n in names}
         return table.frame(columns)
 
-    def time_to(self, share: float) -> float | None:
-        """Time at which a share of the energy was released, in τ_N; ``None`` if it was not."""
-        return _topo.release_time(self.time, self.energy, self.start, self.final, share)
-
-    def _listed(self, share: float) -> float | None:
-        return dict(self.times)[share]
-
-    @property
-    def t50(self) -> float | None:
-        """Time at which half of the energy was released, in τ_N."""
-        return self._listed(0.5)
-
-    @property
-    def t90(self) -> float | None:
-        """The same for 90 %."""
-        return self._listed(0.9)
-
-    @property
-    def t99(self) -> float | None:
-        """The same for 99 %."""
-        return self._listed(0.99)
-
     @property
     def t999(self) -> float | None:
-        """The same for 99.9 %."""
-        return self._listed(0.999)
+        """Time at which 99.9 % were released."""
+        return dict(self.times)[0.999]
 
     def plot(self, ax=None):
         """Energy by part against time, with matplotlib."""
@@ -131,7 +119,7 @@ class ColloidDischarge(Run):
         return show_rings(self.radius, self.rings, screenshot)
 
 
-class Colloid:
+class Colloid(_Battery):
     """A sphere between plates whose surface prefers a pattern of topological charge q.
 
     Args:
@@ -143,6 +131,8 @@ class Colloid:
         more: further keys of a scene's table ``[nematic]``: ``cell``, ``anchoring``, ``boundary``, ``material``, ``field``, ...
     """
 
+    _kind = _topo.ColloidBattery
+
     def __init__(
         self,
         radius: float = 25.0,
@@ -153,22 +143,21 @@ class Colloid:
         precision: str | None = None,
         **more: Any,
     ) -> None:
-        nematic = dict(radius=float(radius), spacing=float(spacing), **more)
+        nematic = dict(radius=radius, spacing=spacing, **more)
         if q is not None:
             if "pattern" in more:
                 raise refuse("q", q, "a pattern is given too: q=None with pattern=..., or keep q")
-            if int(q) != q or not 0 <= q <= 10_000:
+            if q not in range(10_001):
                 raise refuse("q", q, "give a whole number from 0 to 10000")
             nematic["pattern"] = {"charge": int(q)}
+        self._make(nematic, _given(tolerance=tolerance, precision=precision))
         self.radius, self.q = float(radius), q
-        self._made = (nematic, _given(tolerance=float(tolerance), precision=precision))
-        self._colloid = _topo.ColloidBattery(*self._made)
-        #: What is unusual about it, though possible.
-        self.warnings: list[str] = self._colloid.warnings
-        #: Cells of the grid along x, y, z.
-        self.cells: list[int] = self._colloid.cells
-        #: R²/(Γ L), in τ_N.
-        self.diffusion_time: float = self._colloid.diffusion_time
+        self.warnings: list[str] = self._battery.warnings
+        """What is unusual about it, though possible."""
+        self.cells: list[int] = self._battery.cells
+        """Cells of the grid along x, y, z."""
+        self.diffusion_time: float = self._battery.diffusion_time
+        """R²/(Γ L), in τ_N."""
 
     def charge(
         self,
@@ -187,15 +176,7 @@ class Colloid:
             checkpoint: a file from which the same call goes on after it was stopped; written every 30 s and on Ctrl-C.
         """
         given = _given(tolerance=tolerance, seeds=tilts)
-        return ChargedColloid(self._colloid.charge(given, observer, _file(checkpoint)), self.radius)
-
-    def __getstate__(self):
-        return self._made, {k: v for k, v in self.__dict__.items() if k not in ("_colloid", "_made")}
-
-    def __setstate__(self, state) -> None:
-        self._made, others = state
-        self.__dict__.update(others)
-        self._colloid = _topo.ColloidBattery(*self._made)
+        return ChargedColloid(self._battery.charge(given, observer, _file(checkpoint)), self.radius)
 
     def __repr__(self) -> str:
         return f"Colloid(radius {self.radius:g} xi_N, q = {self.q}, cells {self.cells})"
@@ -207,14 +188,14 @@ class ChargedColloid(_Here):
     def __init__(self, made, radius: float) -> None:
         self._colloid, self.radius = made, radius
         report = made.report()
-        #: How it was charged: stop, finished, n_steps, rms_field, energy by part, azimuth, lowest_eigenvalue.
         self.report: dict[str, Any] = report
-        #: Free energy, in L ξ_N.
+        """How it was charged: stop, finished, n_steps, rms_field, energy by part, azimuth, lowest_eigenvalue."""
         self.energy: float = report["energy"]
-        #: Size of the mean horizontal tilt: zero below the buckling.
+        """Free energy, in L ξ_N."""
         self.order_parameter: float = report["order_parameter"]
-        #: ``"minimum"``, ``"saddle"`` or ``"marginal"``.
+        """Size of the mean horizontal tilt: zero below the buckling."""
         self.state: str | None = report["state"]
+        """What is charged: ``"minimum"``, ``"saddle"`` or ``"marginal"``."""
 
     def ring(self, threshold: float = 0.35) -> Ring | None:
         """The line of lowest order around the particle, of cells whose order is below a threshold; ``None`` without one."""
@@ -250,8 +231,10 @@ class SwitchedColloid(_Here):
 
     def __init__(self, made, radius: float) -> None:
         self._colloid, self.radius = made, radius
-        #: Energy after the switch, and what the switch removed, in L ξ_N.
-        self.energy, self.removed = made.energies
+        self.energy: float = made.energies[0]
+        """Energy after the switch, in L ξ_N."""
+        self.removed: float = made.energies[1]
+        """What the switch removed, in L ξ_N."""
 
     def discharge(
         self,

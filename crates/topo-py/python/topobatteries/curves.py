@@ -37,23 +37,28 @@ def vertices(points: ArrayLike) -> np.ndarray:
 class KnotType:
     """The knot type of a curve, as far as its invariants tell."""
 
-    #: The name with its hand, ``m3_1`` for the mirror image of ``3_1``; ``None`` if several fit or none.
     name: str | None
-    #: All names that fit.
+    """The name with its hand, ``m3_1`` for the mirror image of ``3_1``; ``None`` if several fit or none."""
     candidates: list[str]
-    #: Whether the name is proved.
+    """All names that fit."""
     certain: bool
+    """Whether the name is proved."""
     handedness: str
-    #: Crossings of the simplest diagram found.
+    """Which hand it has."""
     crossings: int
+    """Crossings of the simplest diagram found."""
     determinant: int
+    """|Δ(−1)| of the Alexander polynomial."""
     signature: int
+    """Signature, -2 for the right-handed trefoil."""
     alexander: str
+    """Coefficients of the Alexander polynomial."""
     jones: str | None
-    #: The finding as a sentence.
+    """Jones polynomial, where it was computed."""
     description: str
-    #: Of an open curve: each type with its share of the closures, most frequent first.
+    """The finding as a sentence."""
     closures: list[tuple[str, float]]
+    """Of an open curve: each type with its share of the closures, most frequent first."""
 
     def __str__(self) -> str:
         return self.description
@@ -154,10 +159,10 @@ class TightKnot(Curve):
     def __init__(self, said: dict) -> None:
         super().__init__(said["points"])
         self.name: str = said["name"]
-        #: Ropelength of the tight knot, in tube radii.
         self.length_over_radius: float = said["length_over_radius"]
-        #: thickness, writhe, n_struts, n_kinks, residual of the force balance, converged.
+        """Ropelength of the tight knot, in tube radii."""
         self.certificate: dict = {k: v for k, v in said.items() if k not in ("points", "centreline", "name")}
+        """thickness, writhe, n_struts, n_kinks, residual of the force balance, converged."""
         self._centreline: np.ndarray = said["centreline"]
 
     @property
@@ -181,15 +186,21 @@ class Knot:
         self._folder = knots and Path(knots)
         said = _topo.knot(str(name), self._folder)
         self.name: str = said["name"]
+        """Its name in the table."""
         self.crossing_number: int = said["crossing_number"]
+        """Least number of crossings of a diagram."""
         self.braid: list[int] = said["braid"]
-        #: Whether the knot equals its mirror image.
+        """A braid word whose closure it is."""
         self.amphichiral: bool = said["amphichiral"]
+        """Whether the knot equals its mirror image."""
         self.determinant: int = said["determinant"]
+        """|Δ(−1)| of the Alexander polynomial."""
         self.signature: int = said["signature"]
+        """Signature, -2 for the right-handed trefoil."""
         self.alexander: str = said["alexander"]
-        #: Published ropelength, in tube radii; ``None`` where none is.
+        """Coefficients of the Alexander polynomial."""
         self.length_over_radius: float | None = said["length_over_radius"]
+        """Published ropelength, in tube radii; ``None`` where none is."""
 
     def tight(self, quality: str = "draft", cache: str | os.PathLike | None = None) -> TightKnot:
         """Pulls the knot tight.

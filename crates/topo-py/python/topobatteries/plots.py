@@ -72,6 +72,15 @@ def _label(result: Result, name: str) -> str:
     return f"flow {name}" if result.is_colloid else name
 
 
+def _plain(ax) -> None:
+    """Few numbers below, and those of a logarithmic axis beside it without powers."""
+    from matplotlib.ticker import LogFormatter
+
+    ax.locator_params(axis="x", nbins=5)
+    ax.yaxis.set_major_formatter("{x:g}")
+    ax.yaxis.set_minor_formatter(LogFormatter(minor_thresholds=(1.5, 0.5)))
+
+
 def released(result: Result, ax) -> None:
     """What is stored over time, of every discharge."""
     final = dict(zip(result.columns["case"], result.columns["f_final"])) if result.is_colloid else {}
@@ -97,6 +106,7 @@ def times(result: Result, ax) -> None:
         ax.plot(x[rows], y[rows], "o-", ms=3, lw=1, label=_label(result, name))
     share = "99.9" if result.is_colloid else "99"
     ax.set(yscale="log", xlabel=label, ylabel=rf"$t_{{{share}\,\%}}$ / ${_unit(result)}$")
+    _plain(ax)
     ax.legend(frameon=False, fontsize=7)
 
 
@@ -108,6 +118,7 @@ def energy(result: Result, ax) -> None:
     for name, rows in _groups(result).items():
         rows = rows[np.argsort(x[rows], kind="stable")]
         ax.plot(x[rows], y[rows], "o-", ms=3, lw=1, label=_label(result, name))
+    ax.locator_params(axis="x", nbins=5)
     ax.set(xlabel=label, ylabel=r"free energy / $L\xi_N$" if result.is_colloid else "stored energy / $E_0$")
     if result.is_colloid:
         order = ax.twinx()

@@ -13,16 +13,16 @@ PAUSE = 5.0  # shortest time between two plain lines, in seconds
 class Event(NamedTuple):
     """What a run says of itself; a function given as ``progress`` is called with it, between two steps of the run."""
 
-    #: "begin", "replaced", "knot", "working" or "case"
     kind: str
-    #: Case or knot.
+    """What happened: ``"begin"``, ``"replaced"``, ``"knot"``, ``"working"`` or ``"case"``."""
     name: str
-    #: Cases finished so far, those of earlier runs included.
+    """Case or knot."""
     done: int
-    #: Cases of the scene.
+    """Cases finished so far, those of earlier runs included."""
     total: int
-    #: What there is to say: where a case is, its warnings, why earlier ones are computed again.
+    """Cases of the scene."""
     text: str
+    """What there is to say: where a case is, its warnings, why earlier ones are computed again."""
 
 
 Progress = Union[bool, Callable[[Event], object]]

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass
+from numbers import Real
 from typing import TYPE_CHECKING, Any, Callable, Mapping
 
 import numpy as np
@@ -27,34 +28,63 @@ Observer = Callable[[dict], object]
 class Run:
     """What a phase of an experiment leaves behind."""
 
-    #: Time at every accepted step (n,).
     time: np.ndarray
-    #: Elastic energy of a fibre, or free energy of a nematic, at every step (n,).
+    """Time at every accepted step (n,)."""
     energy: np.ndarray
-    #: Energy by part, each (n,).
+    """Elastic energy of a fibre, or free energy of a nematic, at every step (n,)."""
     parts: dict[str, np.ndarray]
-    #: What each channel dissipated so far, each (n,).
+    """Energy by part, each (n,)."""
     dissipated: dict[str, np.ndarray]
-    #: Why it ended, and whether that is an end as asked.
+    """What each channel dissipated so far, each (n,)."""
     stop: str
+    """Why it ended."""
     finished: bool
+    """Whether that is an end as asked."""
     n_steps: int
+    """Steps accepted."""
     n_rejected: int
-    #: What the energy account does not close by, relative.
+    """Steps refused."""
     ledger_residual: float
+    """What the energy account does not close by, relative."""
+    cpu_seconds: float
+    """What it took of the processor, on the thread that led it, in seconds."""
+
+
+class _Discharge:
+    """When a discharge released its energy; times are in the unit of ``time``."""
+
+    def time_to(self, share: float) -> float | None:
+        """Time at which a share of the energy was released; ``None`` if it was not."""
+        # a fibre ends without energy, a nematic in its equilibrium
+        return _topo.release_time(self.time, self.energy, self.start, getattr(self, "final", 0.0), share)
+
+    @property
+    def t50(self) -> float | None:
+        """Time at which half of the energy was released."""
+        return dict(self.times)[0.5]
+
+    @property
+    def t90(self) -> float | None:
+        """Time at which 90 % were released."""
+        return dict(self.times)[0.9]
+
+    @property
+    def t99(self) -> float | None:
+        """Time at which 99 % were released."""
+        return dict(self.times)[0.99]
 
 
 @dataclass
 class RodRun(Run):
     """A phase of a fibre."""
 
-    #: At output times: ``time``, ``energy``, ``writhe``, ``total_twist`` (turns), ``n_contacts``, ``min_distance``,
-    #: ``end_to_end``, each (T,); ``points`` (T, n, 3), ``twist`` and ``energy_density`` (T, n).
     samples: dict[str, np.ndarray]
-    #: Least distance of strands over the contact diameter; ``None`` if none came in reach.
+    """At output times: ``time``, ``energy``, ``writhe``, ``total_twist`` (turns), ``n_contacts``, ``min_distance``,
+    ``end_to_end``, each (T,); ``points`` (T, n, 3), ``twist`` and ``energy_density`` (T, n)."""
     min_distance_over_contact: float | None
-    #: Largest change of Tw + Wr while closed, in turns.
+    """Least distance of strands over the contact diameter; ``None`` if none came in reach."""
     link_drift: float | None
+    """Largest change of Tw + Wr while closed, in turns."""
 
     @property
     def series(self) -> Table:
@@ -63,47 +93,26 @@ class RodRun(Run):
 
 
 @dataclass
-class RodDischarge(RodRun):
+class RodDischarge(_Discharge, RodRun):
     """The discharge of a cut fibre. Released shares count from the energy before the cut. It can be pickled."""
 
-    #: Place of the cut s/L.
     at: float
-    #: Energy that the cut itself removed, in E_0.
+    """Place of the cut s/L."""
     removed: float
-    #: Elastic energy before and after the cut, in E_0.
+    """Energy that the cut itself removed, in E_0."""
     start: float
+    """Elastic energy before the cut, in E_0."""
     after_cut: float
-    #: When the tips had parted, in T_0.
+    """The same after it."""
     parted: float | None
-    #: Shares with the times at which they were released.
+    """When the tips had parted, in T_0."""
     times: list[tuple[float, float | None]]
-
-    def time_to(self, share: float) -> float | None:
-        """Time at which a share of the stored energy was released, in T_0; ``None`` if it was not."""
-        return _topo.release_time(self.time, self.energy, self.start, 0.0, share)
-
-    def _listed(self, share: float) -> float | None:
-        return dict(self.times)[share]
-
-    @property
-    def t50(self) -> float | None:
-        """Time at which half of the energy was released, in T_0."""
-        return self._listed(0.5)
-
-    @property
-    def t90(self) -> float | None:
-        """The same for 90 %."""
-        return self._listed(0.9)
+    """Shares with the times at which they were released, in T_0."""
 
     @property
     def t95(self) -> float | None:
-        """The same for 95 %."""
-        return self._listed(0.95)
-
-    @property
-    def t99(self) -> float | None:
-        """The same for 99 %."""
-        return self._listed(0.99)
+        """Time at which 95 % were released."""
+        return dict(self.times)[0.95]
 
     def plot(self, ax=None):
         """Energy by part against time, with matplotlib."""
@@ -118,6 +127,22 @@ class RodDischarge(RodRun):
         return show_discharge(self, screenshot)
 
 
+class _Battery:
+    """What is pickled as the arguments it was made of, and made again."""
+
+    _kind: type
+
+    def _make(self, *arguments) -> None:
+        self._arguments, self._battery = arguments, self._kind(*arguments)
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {k: v for k, v in self.__dict__.items() if k != "_battery"}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        self._make(*self._arguments)
+
+
 class _Here:
     """Something that lives in this process only."""
 
@@ -126,7 +151,7 @@ class _Here:
         raise TypeError(f"a {name} cannot be pickled: pickle the discharge, or send the {name.replace('Charged', '')} and charge it there")
 
 
-class Rod:
+class Rod(_Battery):
     """A fibre tied into a closed curve, twisted, its ends fused: a battery to be charged.
 
     What is left out is not modelled, but for contact between strands.
@@ -147,6 +172,8 @@ class Rod:
         imperfection: random displacement of the start curve, in h, that breaks its symmetry.
         seed: of the imperfection.
     """
+
+    _kind = _topo.RodBattery
 
     def __init__(
         self,
@@ -170,30 +197,35 @@ class Rod:
         if isinstance(curve, Curve) and not curve.closed:
             raise refuse("curve", curve, "a battery needs a closed curve: Curve(points, closed=True)")
         points = curve.centreline if isinstance(curve, Curve) else vertices(curve)
-        if not -1.0 < poisson_ratio <= 0.5:
-            raise refuse("poisson_ratio", poisson_ratio, "give a number above -1 and at most 0.5")
-        if isinstance(friction, (int, float)):
-            friction = {"ratio": float(friction)}
-        stiff = {} if contact is True else {"stiffness": float(contact)}
+        if not (isinstance(poisson_ratio, Real) and -1.0 < poisson_ratio <= 0.5):
+            raise refuse("poisson_ratio", repr(poisson_ratio), "give a number above -1 and at most 0.5")
+        if isinstance(friction, Real):
+            friction = {"ratio": friction}
+        stiff = {} if contact is True else {"stiffness": contact}
         rod: dict[str, Any] = dict(
-            slenderness=float(slenderness), reading=reading, twist=twist, stretch_ratio=float(stretch_ratio),
-            twist_ratio=1.0 / (1.0 + poisson_ratio), friction=friction and dict(friction),
+            slenderness=slenderness, reading=reading, twist=twist, stretch_ratio=stretch_ratio,
+            twist_ratio=1.0 / (1.0 + poisson_ratio), friction=dict(friction) if isinstance(friction, Mapping) else friction,
             contact=stiff if contact is not False and contact is not None else None,
         )
         if edges is not None:
             rod["n_edges"] = edges
-        accuracy = {} if tolerance is None else {"tolerance": float(tolerance)}
-        self._made = (points, quality, rod, accuracy, float(imperfection), seed)
-        self._rod = _topo.RodBattery(*self._made)
-        #: Length over thickness of the curve that was given.
-        self.ropelength: float = self._rod.ropelength
-        #: Length L, contact diameter, friction range, and length of the start curve, in h.
-        self.length, self.contact_diameter, self.friction_range, self.start_length = self._rod.tube
+        self._make(points, quality, rod, _given(tolerance=tolerance), imperfection, seed)
+        self.ropelength: float = self._battery.ropelength
+        """Length over thickness of the curve that was given."""
+        tube = self._battery.tube
+        self.length: float = tube[0]
+        """Length L, in h."""
+        self.contact_diameter: float = tube[1]
+        """Distance below which strands repel each other, in h."""
+        self.friction_range: float = tube[2]
+        """Distance below which friction acts between strands, in h."""
+        self.start_length: float = tube[3]
+        """Length of the start curve, in h."""
 
     @property
     def points(self) -> np.ndarray:
         """Vertices before charging (n, 3), in h."""
-        return self._rod.points
+        return self._battery.points
 
     def charge(
         self,
@@ -212,15 +244,7 @@ class Rod:
             checkpoint: a file from which the same call goes on after it was stopped; written every 30 s and on Ctrl-C.
         """
         given = _given(duration=duration, outputs_per_decade=outputs_per_decade)
-        return ChargedRod(self._rod.charge(given, observer, _file(checkpoint)))
-
-    def __getstate__(self):
-        return self._made, {k: v for k, v in self.__dict__.items() if k not in ("_rod", "_made")}
-
-    def __setstate__(self, state) -> None:
-        self._made, others = state
-        self.__dict__.update(others)
-        self._rod = _topo.RodBattery(*self._made)
+        return ChargedRod(self._battery.charge(given, observer, _file(checkpoint)))
 
     def __repr__(self) -> str:
         return f"Rod(L = {self.length:g} h, ropelength {self.ropelength:.3f})"
@@ -239,20 +263,21 @@ class ChargedRod(_Here):
 
     def __init__(self, made) -> None:
         self._rod = made
-        #: How it was charged.
-        self.run = RodRun(**made.record())
+        self.run: RodRun = RodRun(**made.record())
+        """How it was charged."""
         last = {k: v[-1] for k, v in self.run.samples.items() if v.ndim == 1}
-        #: Elastic energy, in E_0.
         self.energy: float = last["energy"]
+        """Elastic energy, in E_0."""
         self.writhe: float = last["writhe"]
-        #: In turns.
+        """Writhe Wr."""
         self.total_twist: float = last["total_twist"]
-        #: Vertices (n, 3), in h.
+        """Twist Tw, in turns."""
         self.points: np.ndarray = made.points
-        #: Twist density θ'h at the vertices.
+        """Vertices (n, 3), in h."""
         self.twist: np.ndarray = made.twist
-        #: Elastic energy per length at the vertices, in E_b h².
+        """Twist density θ'h at the vertices."""
         self.energy_density: np.ndarray = made.energy_density
+        """Elastic energy per length at the vertices, in E_b h²."""
 
     @property
     def curve(self) -> Curve:
@@ -278,10 +303,10 @@ class CutRod(_Here):
 
     def __init__(self, made) -> None:
         self._rod = made
-        #: Place of the cut s/L.
         self.at: float = made.at
-        #: Vertices of the open fibre (n + 1, 3), in h.
+        """Place of the cut s/L."""
         self.points: np.ndarray = made.points
+        """Vertices of the open fibre (n + 1, 3), in h."""
 
     def discharge(
         self,

@@ -110,15 +110,16 @@ def load(folder: str | os.PathLike) -> Result:
 class Shape:
     """A fibre, or the ring of a colloid, at one time."""
 
-    #: Since the cut or the switch, in T_0 or τ_N; ``None`` while charged.
     time: float | None
-    #: Vertices (n, 3), in h or ξ_N.
+    """Since the cut or the switch, in T_0 or τ_N; ``None`` while charged."""
     points: np.ndarray
+    """Vertices (n, 3), in h or ξ_N."""
     closed: bool
-    #: Place of the cut s/L; ``None`` while closed, and for rings.
+    """Whether its last vertex is joined to its first."""
     cut: float | None = None
-    #: Arrays at the vertices: ``energy_density`` (E_b h²) and ``twist`` (θ'h) of a fibre, ``angle`` of a ring's cross-section.
+    """Place of the cut s/L; ``None`` while closed, and for rings."""
     data: dict[str, np.ndarray] = field(default_factory=dict)
+    """Arrays at the vertices: ``energy_density`` (E_b h²) and ``twist`` (θ'h) of a fibre, ``angle`` of a ring's cross-section."""
 
     @property
     def curve(self) -> Curve:
@@ -131,10 +132,10 @@ class Result:
     """What a run left behind. It can be pickled: the table goes with it, series and shapes stay in the folder."""
 
     folder: Path
-    #: What is doubtful about the results.
     warnings: list[str]
-    #: Cases without a result, and why.
+    """What is doubtful about the results."""
     failed: dict[str, str]
+    """Cases without a result, and why."""
     _columns: dict[str, np.ndarray] | None = field(default=None, repr=False)
 
     @property

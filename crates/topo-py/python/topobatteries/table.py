@@ -36,7 +36,8 @@ def read(path: Path) -> dict[str, np.ndarray]:
 def column(values: tuple[str, ...], name: str = "") -> np.ndarray:
     """Cells as whole numbers, truth values, numbers or text: the first that all of them are."""
     filled = [v for v in values if v]
-    if name == "warnings" or any(v.strip() != v for v in filled):
+    # Python reads 3_1 as the number 31
+    if name == "warnings" or any("_" in v or v.strip() != v for v in filled):
         return np.array(values, dtype=object)
     if filled and all(v in ("true", "false") for v in filled) and len(filled) == len(values):
         return np.array([v == "true" for v in values])

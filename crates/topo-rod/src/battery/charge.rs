@@ -1,5 +1,6 @@
 //! Charging: the twisted rod relaxes with its ends fused.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use topo_core::{Phase, Schedule, StopReason, positive};
 
@@ -11,11 +12,12 @@ use super::record::{PhaseReport, Recorder, RunRecord, Scales};
 use crate::{Breaking, Broken, RodEnds, RodError, RodState};
 
 /// How long a rod is charged and how often it is sampled.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct ChargeSettings {
     /// Duration of the relaxation, in T_0: long enough to reach the buckled plateau, short enough that instabilities of that
     /// plateau which grow from rounding errors alone (rates of about 2 per T_0 at high twist) do not decide the state.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub duration: f64,
     /// First output time after the start, in T_0.
     pub first_output: f64,
@@ -24,6 +26,19 @@ pub struct ChargeSettings {
     /// Whether the fibre breaks by itself, which ends the charge; `None`: nothing is held against a threshold.
     #[serde(rename = "break", skip_serializing_if = "Option::is_none")]
     pub breaking: Option<Breaking>,
+    /// How the twist is put in, if not at once.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub twisting: Option<Twisting>,
+}
+
+/// Twisting in time: the rod is tied without twist, relaxes for the duration of the charge, is twisted at a constant rate while its ends
+/// are held together, is fused, and relaxes for that duration again.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Twisting {
+    /// Time that the twisting takes.
+    #[schemars(extend("x-unit" = "T_0", "exclusiveMinimum" = 0), example = 5.0)]
+    pub over: f64,
 }
 
 impl Default for ChargeSettings {
@@ -33,6 +48,7 @@ impl Default for ChargeSettings {
             first_output: 1e-2,
             outputs_per_decade: 8.0,
             breaking: None,
+            twisting: None,
         }
     }
 }
@@ -47,6 +63,9 @@ impl ChargeSettings {
         positive("charge.first_output", self.first_output)?;
         positive("charge.outputs_per_decade", self.outputs_per_decade)?;
         self.breaking.map(Breaking::checked).transpose()?;
+        if let Some(twisting) = self.twisting {
+            positive("charge.twisting.over", twisting.over)?;
+        }
         Ok(self)
     }
 }
@@ -54,11 +73,13 @@ impl ChargeSettings {
 /// A charged battery: the relaxed closed rod, and how it got there.
 #[derive(Debug, Clone)]
 pub struct ChargedRod {
-    battery: RodBattery,
-    state: RodState,
-    density: Vec<f64>,
-    record: RunRecord,
-    broken: Option<Broken>,
+    pub(super) battery: RodBattery,
+    pub(super) state: RodState,
+    pub(super) density: Vec<f64>,
+    pub(super) record: RunRecord,
+    /// Elastic energy when twisting in time began, in E_0.
+    pub(super) tied: Option<f64>,
+    pub(super) broken: Option<Broken>,
 }
 
 impl RodBattery {
@@ -75,10 +96,18 @@ impl RodBattery {
         hooks: &mut RunHooks<'_>,
     ) -> Result<ChargedRod, RodError> {
         settings.checked()?;
-        let state = self.start.clone();
-        let mut model = self.model(&state, RodEnds::default())?;
-        model.start(&state)?;
+        let mut state = self.start.clone();
         let scales = Scales::of(&state);
+        let mut until = settings.duration * scales.time;
+        let mut model = self.model(&state, RodEnds::default())?;
+        if let (Some(twisting), Some(density)) = (settings.twisting, self.parameters.twist) {
+            let times = [until, until + twisting.over * scales.time];
+            let angle = density * state.length();
+            state = state.untwisted(density);
+            model = model.with_twisting(angle, times, &state)?;
+            until += times[1];
+        }
+        model.start(&state)?;
         let outputs = Schedule::log_spaced(
             settings.first_output * scales.time,
             settings.outputs_per_decade,
@@ -87,7 +116,7 @@ impl RodBattery {
         let recorder = Recorder::new(scales, self.tube, has_twist, model.parts(), outputs);
         let course = Course {
             phase: Phase::Charge,
-            until: settings.duration * scales.time,
+            until,
             opened: None,
             release: None,
             breaking: settings.breaking,
@@ -96,13 +125,17 @@ impl RodBattery {
         let mut run = RodPhaseRun::begin(self, course, system, recorder, settings, hooks)?;
         let stop = run.go(hooks)?;
         let Finished {
-            mut record, state, ..
+            mut record,
+            state,
+            tied,
+            ..
         } = run.finish(stop, hooks)?;
         self.check_links(&mut record.report);
         let breaking = settings.breaking;
         let site = breaking.and_then(|breaking| self.broken_at(breaking, &state));
         Ok(ChargedRod {
             battery: self.clone(),
+            tied,
             density: self.energy_density(&state),
             state,
             broken: site.map(|site| Broken {
@@ -162,6 +195,20 @@ impl ChargedRod {
     /// `val_a_swelling_ring_breaks_when_its_tension_passes_the_threshold`
     pub fn broken(&self) -> Option<Broken> {
         self.broken
+    }
+
+    /// What the charge took, in E_0: the elastic energy of the rod as it was tied, before it relaxed, and the work of twisting it.
+    ///
+    /// Twist that is tied in at once is put in against a centreline that does not move, so that its work is the twist energy at the
+    /// start. With twist in time the rod has relaxed before, and the work is that of the drive. Of a pulled open rod it is that of
+    /// the grips. None of a run without a sample.
+    ///
+    /// # Validation
+    /// `val_price_of_a_twist_tied_in_at_once`, `val_price_of_a_slow_twist`
+    pub fn energy_in(&self) -> Option<f64> {
+        let samples = &self.record.samples;
+        let (first, last) = (samples.first()?, samples.last()?);
+        Some(self.tied.unwrap_or(first.elastic()) + last.work)
     }
 
     /// How it was charged.

@@ -1,5 +1,6 @@
 //! Discharging: the cut rod opens until its elastic energy is released.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use topo_core::{Phase, Schedule, StopReason, in_range, positive};
 
@@ -7,16 +8,18 @@ use super::cut::CutRod;
 use super::hooks::RunHooks;
 use super::phase::{Course, Finished, RodPhaseRun};
 use super::record::{Recorder, RunRecord, Scales};
-use crate::{Ends, RodEnds, RodError};
+use crate::{EndLoad, Ends, RodEnds, RodError};
 
 /// How far a discharge is followed and how often it is sampled.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct DischargeSettings {
     /// The run ends when this share of the elastic energy left by the cut is released. At least the same share of the energy
     /// before the cut is then released.
+    #[schemars(range(min = 1e-6, max = 0.999_999_999))]
     pub until_released: f64,
     /// Longest time followed, in T_0.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub longest: f64,
     /// First output time after the cut, in T_0.
     pub first_output: f64,
@@ -24,6 +27,9 @@ pub struct DischargeSettings {
     pub outputs_per_decade: f64,
     /// How the ends of the open rod are held and loaded; of a link, those of the component that was cut.
     pub ends: Ends,
+    /// What takes up the work of the ends; nothing by default.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub load: Option<EndLoad>,
 }
 
 impl Default for DischargeSettings {
@@ -34,6 +40,7 @@ impl Default for DischargeSettings {
             first_output: 1e-3,
             outputs_per_decade: 16.0,
             ends: Ends::default(),
+            load: None,
         }
     }
 }
@@ -54,6 +61,9 @@ impl DischargeSettings {
         positive("discharge.first_output", self.first_output)?;
         positive("discharge.outputs_per_decade", self.outputs_per_decade)?;
         self.ends.checked(has_twist)?;
+        if let Some(load) = self.load {
+            load.checked(&self.ends)?;
+        }
         Ok(self)
     }
 }
@@ -79,6 +89,12 @@ pub struct Discharge {
 }
 
 impl Discharge {
+    /// Heat by the end, in E_0: what internal viscosity, twist viscosity and friction dissipated; none of a run without a sample.
+    pub fn heat(&self) -> Option<f64> {
+        let last = self.record.samples.last()?;
+        Some(last.dissipated.iter().sum())
+    }
+
     /// Whether the requested share was released.
     pub fn is_finished(&self) -> bool {
         matches!(self.record.report.stop, StopReason::Condition(_))
@@ -101,8 +117,14 @@ impl CutRod {
         let state = self.state.clone();
         let mut model =
             battery.model(&state, RodEnds::Each(vec![(self.component, settings.ends)]))?;
-        model.set_joined(Some(self.component));
-        model.set_cyclic(true);
+        if let Some(load) = settings.load {
+            model = model.with_load(load, self.component, &state)?;
+        }
+        let is_cut = self.charged.state().chain(self.component)?.is_closed();
+        if is_cut {
+            model.set_joined(Some(self.component));
+            model.set_cyclic(true);
+        }
         let parts = model.parts().clone();
         let before = &self.charged.record().report.ledger;
         let (closed, start) = (before.stored_total(), parts.elastic_of(before));
@@ -110,17 +132,22 @@ impl CutRod {
         let scales = Scales::of(&state);
         let opened = model.account().stored_total();
         let after_cut = parts.elastic_of(model.account());
-        model.record_cut(closed, closed - opened);
+        let removed = if is_cut { closed - opened } else { 0.0 };
+        if is_cut {
+            model.record_cut(closed, removed);
+        }
         let outputs = Schedule::log_spaced(
             settings.first_output * scales.time,
             settings.outputs_per_decade,
         )?;
-        let recorder = Recorder::new(scales, battery.tube(), has_twist, &parts, outputs)
-            .of_cut(self.component);
+        let mut recorder = Recorder::new(scales, battery.tube(), has_twist, &parts, outputs);
+        if is_cut {
+            recorder = recorder.of_cut(self.component);
+        }
         let course = Course {
             phase: Phase::Discharge,
             until: settings.longest * scales.time,
-            opened: Some(self.component),
+            opened: is_cut.then_some(self.component),
             release: Some([after_cut, (1.0 - settings.until_released) * after_cut]),
             breaking: None,
         };
@@ -135,7 +162,7 @@ impl CutRod {
         Ok(Discharge {
             at: self.at,
             component: self.component,
-            removed: (closed - opened) / scales.energy,
+            removed: removed / scales.energy,
             start: start / scales.energy,
             after_cut: after_cut / scales.energy,
             parted: parted.map(|time| time / scales.time),

@@ -11,7 +11,7 @@ use super::tips::tips_have_parted;
 use crate::model::ModelMemory;
 use crate::{Breaking, RodError, RodModel, RodState};
 
-const SCHEMA: &str = "rod-phase/1";
+const SCHEMA: &str = "rod-phase/2";
 
 /// What ends a phase, and what is reported of it.
 #[derive(Clone, Copy)]
@@ -36,6 +36,8 @@ pub(super) struct RodPhaseRun {
     recorder: Recorder,
     /// Time at which the tips were so far apart that they count as separate strands, in η/E_b.
     parted: Option<f64>,
+    /// Elastic energy when the drives first changed, in E_0.
+    tied: Option<f64>,
     case: String,
     clock: CpuClock,
     earlier_cpu_seconds: f64,
@@ -45,6 +47,7 @@ pub(super) struct RodPhaseRun {
 #[derive(Clone, Serialize, Deserialize)]
 struct Beside {
     parted: Option<f64>,
+    tied: Option<f64>,
     cpu_seconds: f64,
 }
 
@@ -83,14 +86,16 @@ impl RodPhaseRun {
                 },
             )?;
         }
-        let mut parted = None;
+        let (mut parted, mut tied) = (None, None);
         let (mut earlier_cpu_seconds, mut memory, mut start) = (0.0, None, state);
         if let Some((simulation, reached, remembered, seen, beside)) = found {
+            model.resume_grips(simulation.time(), &reached);
             if !model.recall(&reached, remembered).unwrap_or(false) {
                 return Err(hooks.refused("the matrices do not fit each other").into());
             }
             recorder.recall(seen);
-            (parted, earlier_cpu_seconds) = (beside.parted, beside.cpu_seconds);
+            (parted, tied) = (beside.parted, beside.tied);
+            earlier_cpu_seconds = beside.cpu_seconds;
             (memory, start) = (Some(simulation), reached);
         }
         let mut simulation =
@@ -104,6 +109,7 @@ impl RodPhaseRun {
             simulation,
             recorder,
             parted,
+            tied,
             case,
             clock,
             earlier_cpu_seconds,
@@ -119,6 +125,7 @@ impl RodPhaseRun {
             match ended {
                 None => {}
                 Some(Ended::Parted) => self.part(),
+                Some(Ended::Changed) => self.change(),
                 Some(Ended::Over(stop)) => {
                     if stop == StopReason::Interrupted {
                         self.save(hooks)?;
@@ -148,6 +155,7 @@ impl RodPhaseRun {
         let bearing = self.bearing.as_deref().zip(breaking);
         let goal = release.map(|[_, goal]| goal);
         let recorder = &mut self.recorder;
+        recorder.watch(&self.simulation);
         let (parts, diameter) = (recorder.parts.clone(), recorder.tube.contact_diameter);
         let window = self.simulation.model().pairs().window().outer();
         let is_joined = goal.is_some() && self.parted.is_none();
@@ -167,9 +175,14 @@ impl RodPhaseRun {
             parts_now.then(|| "tips parted".to_owned())
         };
         let mut see = |s: &Sample<'_, RodState>| recorder.look(s);
-        let stop = self.simulation.advance(until, &mut see, &mut over)?;
+        let change = self.simulation.model().next_change();
+        let target = change.map_or(until, |change| change.min(until));
+        let stop = self.simulation.advance(target, &mut see, &mut over)?;
+        let changes = stop == StopReason::ReachedTime && self.simulation.time() < until;
         Some(if parts_now {
             Ended::Parted
+        } else if changes {
+            Ended::Changed
         } else {
             Ended::Over(stop)
         })
@@ -179,6 +192,15 @@ impl RodPhaseRun {
     fn part(&mut self) {
         self.parted = Some(self.simulation.time());
         self.simulation.modify(|model, _| model.set_cyclic(false));
+    }
+
+    /// From now on the grips do something else.
+    fn change(&mut self) {
+        let (time, books) = (self.simulation.time(), self.simulation.sample().ledger);
+        let elastic = self.recorder.parts.elastic_of(books) / self.recorder.scales.energy;
+        self.tied.get_or_insert(elastic);
+        self.simulation
+            .modify(|model, state| model.change_grips(time, state));
     }
 
     /// Shows samples that are new.
@@ -218,6 +240,7 @@ impl RodPhaseRun {
         let state = self.simulation.state();
         let beside = Beside {
             parted: self.parted,
+            tied: self.tied,
             cpu_seconds: self.cpu_seconds(),
         };
         let model = self.simulation.model().memory(state);
@@ -240,6 +263,7 @@ impl RodPhaseRun {
             hooks.keep(SCHEMA, &self.case, &saved)?;
         }
         let n_seen = self.recorder.seen.samples.len();
+        self.recorder.watch(&self.simulation);
         self.recorder.look_at_rod(&self.simulation.sample());
         self.show(n_seen, hooks);
         let cpu_seconds = self.cpu_seconds();
@@ -248,6 +272,7 @@ impl RodPhaseRun {
             record,
             state: self.simulation.into_state(),
             parted: self.parted,
+            tied: self.tied,
         })
     }
 }
@@ -256,6 +281,8 @@ impl RodPhaseRun {
 enum Ended {
     /// The tips have parted, and the phase continues.
     Parted,
+    /// The grips do something else from now on.
+    Changed,
     /// The phase is over.
     Over(StopReason),
 }
@@ -266,13 +293,16 @@ pub(super) struct Finished {
     pub state: RodState,
     /// When the tips had parted, in η/E_b.
     pub parted: Option<f64>,
+    /// Elastic energy when the drives first changed, in E_0.
+    pub tied: Option<f64>,
 }
 
 impl Beside {
     /// What does not fit a phase that has reached `time`.
     fn flaw(&self, time: f64) -> Option<&'static str> {
         let parted = self.parted.is_none_or(|t| (0.0..=time).contains(&t));
-        (!parted || !self.cpu_seconds.is_finite()).then_some("a time is out of range")
+        let tied = self.tied.is_none_or(f64::is_finite);
+        (!parted || !tied || !self.cpu_seconds.is_finite()).then_some("a time is out of range")
     }
 }
 

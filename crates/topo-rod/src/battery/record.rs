@@ -10,8 +10,8 @@ use super::simulation::RodSimulation;
 use super::tips::tips_have_parted;
 use crate::contact::ContactPairs;
 use crate::energy::{RodParts, StoredEnergy};
-use crate::model::{CHANNELS, WorkAccount};
-use crate::{RodState, Tube};
+use crate::model::{CHANNELS, LOAD, WorkAccount};
+use crate::{GripForce, RodState, Tube};
 
 /// The rod at one output time.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -24,6 +24,10 @@ pub struct RodSample {
     pub dissipated: [f64; 3],
     /// Work done on the rod so far, in E_0.
     pub work: f64,
+    /// Work done on the load so far, in E_0; none without a load.
+    pub load_work: Option<f64>,
+    /// What holds or draws the two ends, per area, in E_b and E_b h; none where nothing does.
+    pub grips: [Option<GripForce>; 2],
     /// Writhe of the centreline.
     pub writhe: f64,
     /// Total twist, in turns.
@@ -59,6 +63,17 @@ pub struct RodPhase {
     pub link_drift: Option<f64>,
     /// Linking numbers of each two closed components of several.
     pub linking: Vec<Linking>,
+    /// What a load took up, if there was one.
+    pub load: Option<LoadReport>,
+}
+
+/// What a load took up.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct LoadReport {
+    /// Work done on it, in E_0.
+    pub work: f64,
+    /// Largest power, in the mean over a step, in E_0/T_0.
+    pub peak_power: f64,
 }
 
 impl PhaseExtension for RodPhase {
@@ -73,6 +88,9 @@ impl PhaseExtension for RodPhase {
     fn write_after<M: SerializeMap>(&self, _: f64, map: &mut M) -> Result<(), M::Error> {
         map.serialize_entry("min_distance_over_contact", &self.min_distance_over_contact)?;
         map.serialize_entry("link_drift", &self.link_drift)?;
+        if let Some(load) = &self.load {
+            map.serialize_entry("load", load)?;
+        }
         if self.linking.is_empty() {
             return Ok(());
         }
@@ -110,6 +128,8 @@ pub(super) struct Seen {
     link_start: Option<f64>,
     pub link_drift: Option<f64>,
     outputs: Schedule,
+    /// Work on a load at the last step, and its largest power.
+    load: Option<[f64; 2]>,
 }
 
 /// Observer of a phase: the energy curve at every step, the rod and what is measured on it at output times.
@@ -125,6 +145,10 @@ pub(super) struct Recorder {
     opened: Option<usize>,
     /// Linking numbers of several components.
     links: Links,
+    /// Those of the present step.
+    grips: [Option<GripForce>; 2],
+    /// Turn of the ends against each other so far, in radians.
+    twisted: f64,
 }
 
 impl Recorder {
@@ -142,6 +166,7 @@ impl Recorder {
                 link_start: None,
                 link_drift: None,
                 outputs,
+                load: None,
             },
             scales,
             tube,
@@ -150,6 +175,8 @@ impl Recorder {
             stored: Vec::with_capacity(parts.len()),
             opened: None,
             links: Links::default(),
+            grips: [None; 2],
+            twisted: 0.0,
         }
     }
 
@@ -171,7 +198,9 @@ impl Recorder {
                 && s.stored.len() == self.parts.len()
                 && s.stored.iter().chain(&s.dissipated).all(|x| x.is_finite())
         });
-        let fits = seen.curve.parts() == begun.curve.parts()
+        let loads = seen.load.iter().flatten().all(|x| x.is_finite());
+        let fits = loads
+            && seen.curve.parts() == begun.curve.parts()
             && seen.curve.channels() == begun.curve.channels()
             && seen.curve.time().last().is_none_or(|t| *t <= now)
             && begun.outputs.leads_to(&seen.outputs);
@@ -187,6 +216,14 @@ impl Recorder {
         self.seen = seen;
     }
 
+    /// Takes the forces of the grips at the present step.
+    pub(super) fn watch(&mut self, simulation: &RodSimulation) {
+        self.twisted = simulation.model().twisted_by(simulation.time());
+        if simulation.model().has_grips() {
+            self.grips = simulation.model().grip_forces(simulation.state());
+        }
+    }
+
     /// Records the present step.
     pub(super) fn look(&mut self, sample: &Sample<'_, RodState>) {
         self.look_at_energy(sample);
@@ -200,6 +237,13 @@ impl Recorder {
         // a run continued after a pause shows its last state again
         if curve.time().last().is_none_or(|last| time > *last) {
             let (books, scale) = (sample.ledger, self.scales.energy);
+            if let Some(work) = load_work(books, scale) {
+                let before = curve.time().last().zip(self.seen.load);
+                let peak = before.map_or(0.0, |(last, [w, peak])| {
+                    peak.max((work - w) / (time - last))
+                });
+                self.seen.load = Some([work, peak]);
+            }
             self.stored.clear();
             self.stored.extend(stored(&self.parts, books, scale));
             let dissipated = dissipated(books, scale);
@@ -222,7 +266,7 @@ impl Recorder {
             self.links.look(state, self.has_twist);
             seen.link_drift = self.links.own_drift();
         } else if state.is_closed() && self.has_twist {
-            let link = writhe + total_twist;
+            let link = writhe + (total_twist - self.twisted / std::f64::consts::TAU);
             let start = *seen.link_start.get_or_insert(link);
             seen.link_drift = Some(seen.link_drift.unwrap_or(0.0).max((link - start).abs()));
         }
@@ -244,6 +288,8 @@ impl Recorder {
             stored: StoredEnergy::new(self.parts.clone(), energies),
             dissipated: dissipated(books, scale),
             work: books.work() / scale,
+            load_work: load_work(books, scale),
+            grips: self.grips,
             writhe,
             total_twist,
             n_contacts: pairs.active().iter().filter(touching).count(),
@@ -278,6 +324,7 @@ impl Recorder {
                 min_distance_over_contact: Some(distance).filter(|d| d.is_finite()),
                 link_drift: self.seen.link_drift,
                 linking: self.links.linking(),
+                load: (self.seen.load).map(|[work, peak_power]| LoadReport { work, peak_power }),
             },
         };
         RunRecord {
@@ -295,6 +342,10 @@ fn stored<'a>(
 ) -> impl Iterator<Item = f64> + 'a {
     let names = parts.names();
     names.map(move |name| books.stored_in(name).unwrap_or(0.0) / scale)
+}
+
+fn load_work(books: &Ledger, scale: f64) -> Option<f64> {
+    Some(books.dissipated_by(LOAD)? / scale)
 }
 
 fn dissipated(books: &Ledger, scale: f64) -> [f64; 3] {

@@ -4,11 +4,12 @@ use nalgebra::Vector3;
 use topo_core::{Ledger, LinearlyImplicit, Rejection};
 
 use super::RodModel;
-use super::parts::CHANNELS;
+use super::parts::{CHANNELS, LOAD};
 use crate::RodState;
 use crate::drag::DragCorrection;
 use crate::friction::friction_form;
 use crate::guard::RiseBudget;
+use crate::load::LoadCorrection;
 use crate::newton::NewtonTwist;
 use crate::viscosity::{TwistViscosity, centreline_form, twist_form};
 
@@ -49,6 +50,12 @@ pub struct WorkAccount {
     /// Solves for what resists each component as a whole.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub n_component_solves: usize,
+    /// Evaluations of a load.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub n_load_evaluations: usize,
+    /// Bytes held for a load.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub load_bytes: usize,
 }
 
 fn is_zero(n: &usize) -> bool {
@@ -64,6 +71,7 @@ impl WorkAccount {
             self.friction_bytes,
             self.matrix_bytes,
             self.component_bytes,
+            self.load_bytes,
         ];
         bytes.iter().sum::<usize>() as u64
     }
@@ -99,7 +107,10 @@ impl RodModel {
     /// The empty account of all terms.
     pub(super) fn empty_ledger(&self) -> Ledger {
         let names: Vec<&'static str> = self.terms.iter().map(|t| t.name()).collect();
-        Ledger::new(&names, &CHANNELS)
+        match self.load {
+            Some(_) => Ledger::new(&names, &[&CHANNELS[..], &[LOAD]].concat()),
+            None => Ledger::new(&names, &CHANNELS),
+        }
     }
 
     /// Energy account of the run.
@@ -145,6 +156,12 @@ impl RodModel {
             component_bytes: several.map_or(0, DragCorrection::n_bytes)
                 + self.newton.n_component_bytes()
                 + self.n_layout_bytes,
+            n_load_evaluations: match self.load {
+                Some(_) => self.n_term_evaluations as usize,
+                None => 0,
+            },
+            load_bytes: self.load.as_ref().map_or(0, |load| size_of_val(&**load))
+                + self.centreline.load().map_or(0, LoadCorrection::n_bytes),
             n_component_solves: (per_factor * solves) as usize,
             matrix_bytes: 8 * (self.centreline.n_nonzeros() + self.newton.n_nonzeros()),
         }
@@ -155,6 +172,10 @@ impl RodModel {
         let a = &mut self.accepted;
         a.stamp = Some(state.stamp());
         a.total = self.at.energies.iter().sum();
+        if let Some(load) = &mut self.load {
+            load.accept();
+            a.total += load.here.energy;
+        }
         a.cosine.clone_from(&self.at.geometry.cosine);
         a.couplings.clone_from(&self.at.couplings);
         if self.is_driven {
@@ -163,7 +184,13 @@ impl RodModel {
     }
 
     /// Work of loads and of prescribed motions over a step, with the mean of the forces at its two ends.
-    pub(super) fn external_work(&self, from: &RodState, step: &[f64], dt: f64) -> f64 {
+    pub(super) fn external_work(
+        &self,
+        from: &RodState,
+        to: &RodState,
+        step: &[f64],
+        dt: f64,
+    ) -> f64 {
         if !self.is_driven {
             return 0.0;
         }
@@ -177,48 +204,31 @@ impl RodModel {
             }
         };
         let mut work = 0.0;
+        if let Some(motor) = &self.motor {
+            let twists = [from, to].map(|state| state.twists()[motor.vertex()]);
+            let cosine = |i: usize| 0.5 * (self.accepted.cosine[i] + self.at.geometry.cosine[i]);
+            work += motor.work(twists, &step[3 * n..], cosine, dt);
+        }
         for placed in &self.ends {
-            for (end, motion) in placed.ends.motions.iter().enumerate() {
+            let ends = self.ends_at(placed, from.clock() + 0.5 * dt);
+            for (end, motion) in ends.motions.iter().enumerate() {
                 work += Vector3::from(motion.force).dot(&moved(placed.vertices()[end]));
                 work += motion.torque * turned(placed.edges()[end]);
             }
         }
         // what a hold must supply: viscous resistance less the rod's own pull
         for &(i, _) in &self.held_vertices {
-            let (mut resistance, chain) = (Vector3::zeros(), from.chain_of(i));
-            let viscous = 1.0 / (chain.rest_length() * dt);
-            for j in [i.checked_sub(1), Some(i)]
-                .into_iter()
-                .flatten()
-                .filter(|j| chain.edges().contains(j))
-            {
-                let other = if j == i { i + 1 } else { i - 1 };
-                resistance += (moved(i) - moved(other)) * viscous;
-            }
-            for (couplings, half) in [(&self.accepted.couplings, 0.5), (&self.at.couplings, 0.5)] {
-                for &(a, b, c) in couplings
-                    .iter()
-                    .filter(|c| c.0 as usize == i || c.1 as usize == i)
-                {
-                    let other = if a as usize == i { b } else { a } as usize;
-                    resistance += (moved(i) - moved(other)) * (half * c / dt);
-                }
+            let (old, new) = (&self.accepted.couplings, &self.at.couplings);
+            let mut resistance = self.resistance(from, i, moved, &[(old, 0.5), (new, 0.5)], dt);
+            if let Some(load) = &self.load {
+                resistance += load.resistance(i, moved) / dt;
             }
             let pull = (self.accepted.force.vertex[i] + self.at.force.vertex[i]) * 0.5;
             work += (resistance - pull).dot(&moved(i));
         }
         for &(j, _) in &self.held_edges {
-            let chain = from.chain_of(j);
-            let half = 0.5 / (chain.rest_length() * dt);
-            let mut resistance = 0.0;
-            for i in [j, j + 1]
-                .into_iter()
-                .filter(|i| chain.interior().contains(i))
-            {
-                let other = if i == j { j - 1 } else { j + 1 };
-                let cosine = 0.5 * (self.accepted.cosine[i] + self.at.geometry.cosine[i]);
-                resistance += half * (turned(j) - cosine * turned(other));
-            }
+            let cosine = |i: usize| 0.5 * (self.accepted.cosine[i] + self.at.geometry.cosine[i]);
+            let resistance = self.resistance_to_turns(from, j, turned, cosine, dt);
             work += (resistance - 0.5 * (self.accepted.force.torque[j] + self.at.force.torque[j]))
                 * turned(j);
         }
@@ -262,19 +272,29 @@ impl RodModel {
             let several = self.centreline.drag();
             several.map_or(0.0, |several| several.drag().form(u, v))
         };
+        let loaded = |u: &[f64], v: &[f64]| self.load.as_ref().map_or(0.0, |load| load.form(u, v));
         let smooth = |u: &[f64], v: &[f64]| centreline_form(layout, u, v) + dragged(u, v);
-        let centreline = |u: &[f64], v: &[f64]| smooth(u, v) + rubbed(u, v);
+        let centreline = |u: &[f64], v: &[f64]| smooth(u, v) + rubbed(u, v) + loaded(u, v);
         let friction = rubbed(step, step);
-        let slow = smooth(step, step) + friction;
+        let taken = loaded(step, step);
+        let slow = smooth(step, step) + friction + taken;
         let factor = 1.0 + excess(slow, g, a, &smoothed, centreline);
-        self.ledger.dissipate(0, (slow - friction) * factor / dt);
+        self.ledger
+            .dissipate(0, (slow - friction - taken) * factor / dt);
         self.ledger.dissipate(2, friction * factor / dt);
+        if let Some(load) = &self.load {
+            self.ledger
+                .dissipate(CHANNELS.len(), taken * factor / dt + load.stored());
+        }
         if self.twist.is_some() {
             let (old, new) = (&self.accepted.cosine, &self.at.geometry.cosine);
             let cosine = |i: usize| 0.5 * (old[i] + new[i]);
             let twist = |u: &[f64], v: &[f64]| twist_form(layout, cosine, u, v);
-            let turned = 3 * n..;
-            let slow = twist(&step[turned.clone()], &step[turned.clone()]);
+            let turned = 3 * n..3 * n + self.n_turns();
+            let mut slow = twist(&step[turned.clone()], &step[turned.clone()]);
+            if let Some(motor) = &self.motor {
+                slow += motor.form(&step[turned.clone()], cosine, dt);
+            }
             let factor = 1.0 + excess(slow, g, &a[turned.clone()], &smoothed[turned], twist);
             self.ledger.dissipate(1, slow * factor / dt);
         }

@@ -40,6 +40,10 @@ impl LinearlyImplicit for RodModel {
                 .update(state, &self.pairs, diameter, rate.map(|v| &v[..]), g_dt);
             contact.add_expected(self.expected.pairs(), &mut self.stiffness);
         }
+        if let Some(load) = &self.load {
+            load.add_stiffness(g_dt, &mut self.stiffness);
+            self.newton.damp(load.here.damping);
+        }
         self.newton
             .prepare(
                 state,
@@ -66,7 +70,7 @@ impl LinearlyImplicit for RodModel {
         let (moved, turned) = rhs.split_at_mut(3 * self.n_vertices);
         self.newton.solve(moved);
         if let Some(newton) = self.newton_twist.as_mut() {
-            newton.solve(turned);
+            newton.solve(&mut turned[..self.n_edges]);
         }
         Ok(())
     }

@@ -130,6 +130,9 @@ impl RodModel {
         if memory.is_evaluated && self.evaluate(state).is_err() {
             return Ok(false);
         }
+        if let Some(load) = &mut self.load {
+            load.accept_at(state);
+        }
         let mut couplings = Vec::with_capacity(memory.room[1]);
         couplings.extend_from_slice(&memory.accepted.couplings);
         self.accepted = Accepted {

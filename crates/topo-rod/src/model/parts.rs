@@ -9,6 +9,9 @@ use crate::energy::Force;
 /// Channels of dissipation, in the order of the ledger.
 pub(crate) const CHANNELS: [&str; 3] = ["viscosity", "twist_viscosity", "friction"];
 
+/// The channel of what a load takes up, the last one where there is one.
+pub(crate) const LOAD: &str = "load";
+
 /// What the ledger needs of the state accepted last.
 #[derive(Clone, Default, Serialize, Deserialize)]
 pub(super) struct Accepted {

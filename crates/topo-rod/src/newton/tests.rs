@@ -8,7 +8,7 @@ use super::*;
 use crate::Geometry;
 use crate::energy::{At, Bend, ContactEnergy, EnergyTerm, Stretch};
 use crate::friction::{Friction, friction_form};
-use crate::viscosity::{CentrelineViscosity, centreline_form, twist_form};
+use crate::viscosity::{CentrelineViscosity, TwistViscosity, centreline_form, twist_form};
 
 /// A crumpled rod of 40 edges with strands in contact.
 fn crumpled(closed: bool) -> RodState {
@@ -114,7 +114,7 @@ fn law_rotations_solve_their_equations() {
     }
 }
 
-/// (M + s H) out = M r at the vertices that are free, with M = η K + η_f C; those held move as prescribed.
+/// (M + s H) out = M r at the vertices that are free, with M = η K + η_f C and a dashpot between the ends of what is open; those held move as prescribed.
 #[test]
 fn law_newton_steps_solve_their_equations() {
     let alone = |closed| RodState::link(&[crumpled(closed)]).unwrap();
@@ -154,6 +154,16 @@ fn law_newton_steps_solve_their_equations() {
         friction.couplings(pairs.active(), &mut couplings);
         assert!(couplings.len() > 10);
         let s = 0.03;
+        let line = load_of(&state);
+        if let Some(LoadLine {
+            from: Some(a),
+            to: b,
+        }) = line
+        {
+            let spring = DAMPING * 0.3 + DAMPING / s;
+            stiffness.add_further(a as u32, b as u32, spring);
+            stiffness.further.sort_by_key(|p| (p.0, p.1));
+        }
         let fixed: Vec<bool> = (0..n).map(|i| held.contains(&i)).collect();
         let drag = Drag::of(&state, &fixed, 3.0);
         let mut given: Vec<f64> = (0..3 * n).map(|k| (0.9 * k as f64).sin()).collect();
@@ -163,6 +173,10 @@ fn law_newton_steps_solve_their_equations() {
         }
         let floats = |chain: &&Chain| !chain.vertices().any(|i| held.contains(&i));
         let mut newton = NewtonMatrix::new(fixed.clone()).with_drag(drag);
+        if let Some(line) = line {
+            newton = newton.with_load(line);
+            newton.damp(DAMPING);
+        }
         newton
             .prepare(&state, &pairs, &stiffness, s, &couplings)
             .unwrap();
@@ -200,7 +214,17 @@ fn law_newton_steps_solve_their_equations() {
             }
             out
         };
-        let (left, right) = (resistance(&u), resistance(&r));
+        // that of the dashpot to the step itself is in the stiffness
+        let (left, mut right) = (resistance(&u), resistance(&r));
+        if let Some(LoadLine {
+            from: Some(a),
+            to: b,
+        }) = line
+        {
+            let push = DAMPING * (r[b] - r[a]);
+            right[b] += push;
+            right[a] -= push;
+        }
         let elastic = stiffness.product(&state, pairs.active(), &u);
         for i in 0..n {
             if held.contains(&i) {
@@ -219,6 +243,18 @@ fn law_newton_steps_solve_their_equations() {
     }
 }
 
+/// A resistance that couples the three directions.
+const DAMPING: Matrix3<f64> = Matrix3::new(0.9, 0.2, -0.3, 0.2, 0.7, 0.1, -0.3, 0.1, 1.3);
+
+/// Between the ends of the open rod, if there is one.
+fn load_of(state: &RodState) -> Option<LoadLine> {
+    let open = state.components().iter().find(|chain| !chain.is_closed())?;
+    Some(LoadLine {
+        from: Some(open.first()),
+        to: open.last(),
+    })
+}
+
 /// A closed rod, an open one and a closed one of other edges, `apart` from each other.
 fn link(apart: f64) -> RodState {
     let other = crumpled(true).centreline().unwrap();
@@ -234,7 +270,7 @@ fn link(apart: f64) -> RodState {
     RodState::link(&parts).unwrap()
 }
 
-/// (η K + η_f C + Z) v = f of a link, rubbing and apart, without and with held vertices; net forces on components move them.
+/// (η K + η_f C + Z + T D Tᵀ) v = f of a link with a dashpot between the ends of its open rod, rubbing and apart, without and with held vertices; net forces on components move them.
 #[test]
 fn law_velocities_of_a_link_solve_their_equations() {
     for (apart, held, ratio) in [
@@ -255,7 +291,11 @@ fn law_velocities_of_a_link_solve_their_equations() {
         friction.couplings(pairs.active(), &mut couplings);
         let fixed: Vec<bool> = (0..n).map(|i| held.contains(&i)).collect();
         let drag = Drag::of(&state, &fixed, ratio).unwrap();
-        let mut mobility = CentrelineViscosity::new(fixed.clone()).with_drag(Some(drag.clone()));
+        let line = load_of(&state).expect("an open rod");
+        let mut mobility = CentrelineViscosity::new(fixed.clone())
+            .with_drag(Some(drag.clone()))
+            .with_load(line);
+        mobility.damp(DAMPING);
         let mut force: Vec<f64> = (0..3 * n).map(|k| (0.9 * k as f64).sin() + 0.3).collect();
         if held.is_empty() {
             crate::viscosity::remove_mean(&mut force, n);
@@ -269,7 +309,10 @@ fn law_velocities_of_a_link_solve_their_equations() {
             unit[place] = 1.0;
             let resisted = centreline_form(&state, &unit, &v)
                 + friction_form(&couplings, &unit, &v, n)
-                + drag.form(&unit, &v);
+                + drag.form(&unit, &v)
+                + line
+                    .relative(&unit, n)
+                    .dot(&(DAMPING * line.relative(&v, n)));
             if fixed[place % n] {
                 assert_eq!(v[place], force[place]);
             } else {

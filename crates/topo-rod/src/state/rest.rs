@@ -22,6 +22,23 @@ pub struct RestShape {
     pub twist: Vec<f64>,
 }
 
+impl RestShape {
+    /// The natural shape of the mirror image: (κ_1, −κ_2) and −θ'.
+    ///
+    /// A mirror M turns tangents t into M t, and binormals, which are axial, into −M kb. d_1 begins as a binormal and angles change
+    /// their sign, so that d_1 becomes −M d_1 and d_2 = t × d_1 becomes M d_2 all along: kb·d_1 stays, kb·d_2 changes its sign.
+    ///
+    /// # Validation
+    /// `law_fibres_with_a_natural_shape_are_mirrored_with_it`
+    #[must_use]
+    pub fn mirrored(&self) -> Self {
+        Self {
+            curvature: self.curvature.iter().map(|[a, b]| [*a, -b]).collect(),
+            twist: self.twist.iter().map(|turn| -turn).collect(),
+        }
+    }
+}
+
 /// What a state with a natural shape holds beside its vertices and twists.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct Material {

@@ -5,7 +5,7 @@ function elastic(box) {
   const said = box.querySelector('.said'), table = box.querySelector('table.states'), bar = box.querySelector('.bar');
   let now = null;
   function frame(k) {
-    const c = now.data, n = c.n;
+    const c = now.data, n = c.n.reduce((a, b) => a + b);
     stage.clear();
     const points = floats(now.xyz, 3 * n * k, 3 * n, c.scale), colors = [];
     const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
@@ -19,7 +19,12 @@ function elastic(box) {
     const center = new T.Vector3(...low.map((v, j) => (v + high[j]) / 2));
     let radius = 0;
     for (let i = 0; i < n; i++) radius = Math.max(radius, Math.hypot(...[0, 1, 2].map((j) => points[3 * i + j] - center.getComponent(j))));
-    stage.group.add(tube(points, colors, k === 0, c.radius, 14));
+    // of a link, each component
+    let from = 0;
+    c.n.forEach((m, j) => {
+      stage.group.add(tube(points.subarray(3 * from, 3 * (from + m)), colors.slice(from, from + m), c.closed[k][j], c.radius, 14));
+      from += m;
+    });
     stage.fit(center, radius + c.radius, now.fresh ? 0 : undefined);
     now.fresh = false;
     stage.draw();

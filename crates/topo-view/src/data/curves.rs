@@ -6,16 +6,19 @@ use nalgebra::Vector3;
 use serde::Deserialize;
 use std::path::Path;
 
-/// A vertex of `charged.csv` or `snapshots.csv`: lengths in h, density in E_b h^2.
+/// Fewest vertices of a curve.
+const LEAST: usize = 3;
+
+/// A vertex of `charged.csv` or `snapshots.csv`, or of the `x,y,z` of a knot: lengths in h, density in E_b h^2.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 struct Vertex {
     /// Of a link: counted from 1.
     #[serde(default)]
-    component: usize,
+    component: Option<usize>,
     #[serde(default)]
-    cut: f64,
+    cut: Option<f64>,
     #[serde(default)]
-    time: f64,
+    time: Option<f64>,
     #[serde(default)]
     s: f64,
     x: f64,
@@ -23,85 +26,147 @@ struct Vertex {
     z: f64,
     #[serde(default)]
     energy_density: f64,
+    /// Not in snapshots of early versions.
+    #[serde(default)]
+    twist: Option<f64>,
 }
 
-/// The vertices of a table; those of a link are refused, as pictures would join its components.
-fn vertices(path: &Path) -> Result<Vec<Vertex>, ViewError> {
-    let all: Vec<Vertex> = read_csv(path)?;
-    if all.iter().any(|v| v.component > 1) {
-        return Err(ViewError::Table {
-            path: path.to_owned(),
-            reason: "it is a link: only shapes of one component are drawn".to_owned(),
-        });
+impl Vertex {
+    fn component(&self) -> usize {
+        self.component.unwrap_or(1)
     }
-    Ok(all)
 }
 
-/// A curve with its arc length and energy density.
+/// A curve with its arc length and energy density: a knot, or a component of a link.
 #[derive(Debug, Clone, Default)]
 pub struct Curve {
+    /// Which component it is, counted from 1.
+    pub component: usize,
+    /// Whether the last vertex joins the first.
+    pub closed: bool,
     /// Arc length of the vertices.
     pub s: Vec<f64>,
     /// Vertices.
     pub points: Vec<Vector3<f64>>,
     /// Energy density at the vertices.
     pub density: Vec<f64>,
+    /// Twist at the vertices, where the table has it.
+    pub twist: Option<Vec<f64>>,
 }
 
 impl Curve {
-    /// Reads `charged.csv` of a case, or a knot's `x,y,z`.
+    /// Reads a table with one closed curve: `charged.csv` of a knot's case, or a knot's `x,y,z`.
+    ///
+    /// # Errors
+    /// A table that cannot be read, or that holds no curve or several.
     pub fn read(path: &Path) -> Result<Self, ViewError> {
-        let mut curve = Self::default();
-        for v in vertices(path)? {
-            curve.push(&v);
+        let mut all = Self::read_all(path)?;
+        if all.len() > 1 {
+            let reason = format!("it is a link of {} components: a knot is needed", all.len());
+            return Err(unusable(path, reason));
         }
-        if curve.points.len() < 3 {
-            let reason = format!("{} vertices, at least 3 are needed", curve.points.len());
-            return Err(ViewError::Table {
-                path: path.to_owned(),
-                reason,
-            });
-        }
-        Ok(curve)
+        Ok(all.swap_remove(0))
     }
 
-    fn push(&mut self, v: &Vertex) {
-        self.s.push(v.s);
-        self.points.push(Vector3::new(v.x, v.y, v.z));
-        self.density.push(v.energy_density);
+    /// Reads the closed curves of a table: one, or the components of a link in their order.
+    ///
+    /// # Errors
+    /// A table that cannot be read, or a curve of too few vertices.
+    pub fn read_all(path: &Path) -> Result<Vec<Self>, ViewError> {
+        let all: Vec<Vertex> = read_csv(path)?;
+        if all.is_empty() {
+            return Err(unusable(path, "no vertices".to_owned()));
+        }
+        curves(path, &all, |_| true)
+    }
+
+    fn new(vertices: &[Vertex], closed: bool) -> Self {
+        let of = |f: fn(&Vertex) -> f64| vertices.iter().map(f).collect::<Vec<f64>>();
+        let points = vertices.iter().map(|v| Vector3::new(v.x, v.y, v.z));
+        Self {
+            component: vertices.first().map_or(1, Vertex::component),
+            closed,
+            s: of(|v| v.s),
+            points: points.collect(),
+            density: of(|v| v.energy_density),
+            twist: vertices.iter().map(|v| v.twist).collect(),
+        }
     }
 }
 
-/// An open curve at a time of a discharge.
+fn unusable(path: &Path, reason: String) -> ViewError {
+    ViewError::Table {
+        path: path.to_owned(),
+        reason,
+    }
+}
+
+/// The curves of one shape, of which `is_closed` says how each ends.
+fn curves(
+    path: &Path,
+    vertices: &[Vertex],
+    is_closed: impl Fn(&[Vertex]) -> bool,
+) -> Result<Vec<Curve>, ViewError> {
+    let components = vertices.chunk_by(|a, b| a.component() == b.component());
+    let curve = |of: &[Vertex]| match of.len() {
+        n if n < LEAST => {
+            let reason = format!("a curve of {n} vertices, at least {LEAST} are needed");
+            Err(unusable(path, reason))
+        }
+        _ => Ok(Curve::new(of, is_closed(of))),
+    };
+    components.map(curve).collect()
+}
+
+/// The vertices of curves, one after the other.
+pub fn points_of(curves: &[Curve]) -> Vec<Vector3<f64>> {
+    curves.iter().flat_map(|c| &c.points).copied().collect()
+}
+
+/// A cut fibre at a time of its discharge.
 #[derive(Debug, Clone)]
 pub struct Snapshot {
     /// Place of the cut.
     pub cut: f64,
     /// Time in T0.
     pub time: f64,
-    /// The curve.
-    pub curve: Curve,
+    /// Its curves: of a link those that are not cut are closed.
+    pub curves: Vec<Curve>,
 }
 
-/// Reads `snapshots.csv`, in order of the file.
-pub fn snapshots(path: &Path) -> Result<Vec<Snapshot>, ViewError> {
-    let mut shots: Vec<Snapshot> = Vec::new();
-    for v in vertices(path)? {
-        match shots.last_mut() {
-            Some(s) if s.cut == v.cut && s.time == v.time => s.curve.push(&v),
-            _ => {
-                let mut curve = Curve::default();
-                curve.push(&v);
-                shots.push(Snapshot {
-                    cut: v.cut,
-                    time: v.time,
-                    curve,
-                });
-            }
+/// Reads `snapshots.csv` of a case, in order of the file.
+///
+/// A component that is cut has one vertex more than in `charged.csv`, its last one where its first one was. That tells open components
+/// of a link from closed ones; a fibre alone is cut.
+///
+/// # Errors
+/// Tables that cannot be read or do not belong together, or a curve of too few vertices.
+pub fn snapshots(case: &Path) -> Result<Vec<Snapshot>, ViewError> {
+    let path = case.join("snapshots.csv");
+    let vertices: Vec<Vertex> = read_csv(&path)?;
+    let whole = match vertices.iter().all(|v| v.component.is_none()) {
+        true => Vec::new(),
+        false => Curve::read_all(&case.join("charged.csv"))?,
+    };
+    let is_closed = |of: &[Vertex]| {
+        let charged = whole.iter().find(|c| c.component == of[0].component());
+        charged.is_some_and(|c| c.points.len() == of.len())
+    };
+    let shot = |of: &[Vertex]| {
+        let curves = curves(&path, of, is_closed)?;
+        if curves.len() != whole.len().max(1) {
+            let (found, n) = (curves.len(), whole.len().max(1));
+            let reason = format!("a shape of {found} components, charged.csv has {n}");
+            return Err(unusable(&path, reason));
         }
-    }
-    shots.retain(|s| s.curve.points.len() >= 3);
-    Ok(shots)
+        Ok(Snapshot {
+            cut: of[0].cut.unwrap_or(0.0),
+            time: of[0].time.unwrap_or(0.0),
+            curves,
+        })
+    };
+    let shots = vertices.chunk_by(|a, b| a.cut == b.cut && a.time == b.time);
+    shots.map(shot).collect()
 }
 
 /// A row of `series.csv` as far as figures need it.

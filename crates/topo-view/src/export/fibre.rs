@@ -1,43 +1,25 @@
-//! A fibre: charged, and over its discharges.
+//! A fibre: charged, and over its discharges; of a link, all its components.
 
 use super::about::About;
-use super::files::{Files, Wanted, damaged, table};
+use super::files::{Files, Wanted, as_damage};
 use super::npz::Archive;
 use super::vtk::{self, Array};
+use crate::data::{Curve, snapshots};
 use crate::error::ViewError;
 use nalgebra::Vector3;
-use serde::Deserialize;
 use std::path::Path;
 use topo_rod::Tube;
 
-/// A vertex of `charged.csv` or `snapshots.csv`.
-#[derive(Debug, Clone, Copy, Deserialize)]
-struct Vertex {
-    /// Of a link: counted from 1.
-    #[serde(default)]
-    component: usize,
-    #[serde(default)]
-    cut: Option<f64>,
-    #[serde(default)]
+/// The fibre at one time.
+struct Shape {
+    /// `None`: charged.
     time: Option<f64>,
-    s: f64,
-    x: f64,
-    y: f64,
-    z: f64,
-    energy_density: f64,
-    /// Not in snapshots of early versions.
-    #[serde(default)]
-    twist: Option<f64>,
+    components: Vec<Component>,
 }
 
-/// The fibre at one time, with what its vertices tell.
-struct Shape {
-    closed: bool,
-    time: f64,
-    points: Vec<Vector3<f64>>,
-    s: Vec<f64>,
-    energy_density: Vec<f64>,
-    twist: Option<Vec<f64>>,
+/// A component with what its vertices tell.
+struct Component {
+    curve: Curve,
     tangent: Vec<Vector3<f64>>,
     curvature: Vec<f64>,
     stretch: Vec<f64>,
@@ -63,22 +45,16 @@ pub fn write(
         .with("units.energy_density", "E_b h^2")
         .with("units.curvature", "1/h")
         .with("units.twist", "1/h");
-    let charged: Vec<Vertex> = table(case, "charged.csv")?;
-    if charged.iter().any(|v| v.component > 1) {
-        return Err(ViewError::Table {
-            path: case.join("charged.csv"),
-            reason: "it is a link: only shapes of one component are exported".to_owned(),
-        });
-    }
-    let charged = Shape::new(&charged, true, case)?;
-    let vertices: Vec<Vertex> = table(case, "snapshots.csv")?;
+    let charged = Curve::read_all(&case.join("charged.csv"))
+        .map(|curves| Shape::new(None, curves))
+        .map_err(|e| as_damage(case, "charged.csv", e))?;
+    let shots = snapshots(case).map_err(|e| as_damage(case, "snapshots.csv", e))?;
     let mut cuts: Vec<(f64, Vec<Shape>)> = Vec::new();
-    for group in vertices.chunk_by(|a, b| a.cut == b.cut && a.time == b.time) {
-        let shape = Shape::new(group, false, case)?;
-        let at = group[0].cut.unwrap_or(0.0);
+    for shot in shots {
+        let shape = Shape::new(Some(shot.time), shot.curves);
         match cuts.last_mut() {
-            Some((cut, shapes)) if *cut == at => shapes.push(shape),
-            _ => cuts.push((at, vec![shape])),
+            Some((cut, shapes)) if *cut == shot.cut => shapes.push(shape),
+            _ => cuts.push((shot.cut, vec![shape])),
         }
     }
     if wanted.vtk {
@@ -88,9 +64,9 @@ pub fn write(
             let mut times = Vec::new();
             for (i, shape) in shapes.iter().enumerate() {
                 let file = format!("{name}-{i:02}.vtp");
-                let about = about.at(Some(shape.time)).with("cut", *cut);
+                let about = about.at(shape.time).with("cut", *cut);
                 shape.write_vtk(&about, &files.place(&file))?;
-                times.push((shape.time, file));
+                times.push((shape.time.unwrap_or(0.0), file));
             }
             files.series(&name, &times)?;
         }
@@ -101,7 +77,7 @@ pub fn write(
         for (k, (cut, shapes)) in cuts.iter().enumerate() {
             let name = format!("discharge{}", k + 1);
             archive.add(&format!("{name}_cut"), &[], vec![*cut])?;
-            let times = shapes.iter().map(|s| s.time).collect();
+            let times = shapes.iter().map(|s| s.time.unwrap_or(0.0)).collect();
             archive.add(&format!("{name}_time"), &[shapes.len()], times)?;
             add(&mut archive, &name, shapes)?;
         }
@@ -110,20 +86,26 @@ pub fn write(
     Ok(())
 }
 
-/// Adds shapes of the same number of vertices; one closed shape has no index of time.
+/// Adds shapes of the same numbers of vertices; the charged one has no index of time.
 fn add(archive: &mut Archive, name: &str, shapes: &[Shape]) -> Result<(), ViewError> {
     let Some(first) = shapes.first() else {
         return Ok(());
     };
-    let n = first.points.len();
-    let lead: Vec<usize> = if first.closed {
-        vec![n]
-    } else {
-        vec![shapes.len(), n]
+    let n: usize = first.curves().map(|c| c.points.len()).sum();
+    let lead: Vec<usize> = match first.time {
+        None => vec![n],
+        Some(_) => vec![shapes.len(), n],
     };
-    archive.add(&format!("{name}_closed"), &[], vec![first.closed])?;
-    let mut put = |what: &str, of: &dyn Fn(&Shape) -> Vec<f64>| {
-        let values: Vec<f64> = shapes.iter().flat_map(of).collect();
+    let closed: Vec<bool> = first.curves().map(|c| c.closed).collect();
+    if first.is_link() {
+        archive.add(&format!("{name}_closed"), &[closed.len()], closed)?;
+        archive.add(&format!("{name}_component"), &[n], first.component())?;
+    } else {
+        archive.add(&format!("{name}_closed"), &[], closed)?;
+    }
+    let mut put = |what: &str, of: &dyn Fn(&Component) -> Vec<f64>| {
+        let components = shapes.iter().flat_map(|s| &s.components);
+        let values: Vec<f64> = components.flat_map(of).collect();
         let mut shape = lead.clone();
         if values.len() > shapes.len() * n {
             shape.push(3);
@@ -131,42 +113,83 @@ fn add(archive: &mut Archive, name: &str, shapes: &[Shape]) -> Result<(), ViewEr
         archive.add(&format!("{name}_{what}"), &shape, values)
     };
     let flat = |v: &[Vector3<f64>]| v.iter().flat_map(|p| [p.x, p.y, p.z]).collect();
-    put("points", &|s| flat(&s.points))?;
-    put("tangent", &|s| flat(&s.tangent))?;
-    put("s", &|s| s.s.clone())?;
-    put("curvature", &|s| s.curvature.clone())?;
-    put("stretch", &|s| s.stretch.clone())?;
-    put("energy_density", &|s| s.energy_density.clone())?;
-    if shapes.iter().all(|s| s.twist.is_some()) {
-        put("twist", &|s| s.twist.clone().unwrap_or_default())?;
+    put("points", &|c| flat(&c.curve.points))?;
+    put("tangent", &|c| flat(&c.tangent))?;
+    put("s", &|c| c.curve.s.clone())?;
+    put("curvature", &|c| c.curvature.clone())?;
+    put("stretch", &|c| c.stretch.clone())?;
+    put("energy_density", &|c| c.curve.density.clone())?;
+    if shapes.iter().all(Shape::has_twist) {
+        put("twist", &|c| c.curve.twist.clone().unwrap_or_default())?;
     }
     Ok(())
 }
 
 impl Shape {
-    fn new(vertices: &[Vertex], closed: bool, case: &Path) -> Result<Self, ViewError> {
-        let n = vertices.len();
-        if n < 4 {
-            let name = if closed {
-                "charged.csv"
-            } else {
-                "snapshots.csv"
-            };
-            let reason = format!("a shape of {n} vertices, at least 4 are needed");
-            return Err(damaged(case, name, &reason));
+    fn new(time: Option<f64>, curves: Vec<Curve>) -> Self {
+        let components = curves.into_iter().map(Component::new).collect();
+        Self { time, components }
+    }
+
+    fn curves(&self) -> impl Iterator<Item = &Curve> {
+        self.components.iter().map(|c| &c.curve)
+    }
+
+    fn is_link(&self) -> bool {
+        self.components.len() > 1
+    }
+
+    fn has_twist(&self) -> bool {
+        self.curves().all(|curve| curve.twist.is_some())
+    }
+
+    /// Component of each vertex, counted from 1.
+    fn component(&self) -> Vec<i64> {
+        let of = |c: &Curve| vec![c.component as i64; c.points.len()];
+        self.curves().flat_map(of).collect()
+    }
+
+    fn write_vtk(&self, about: &About, path: &Path) -> Result<(), ViewError> {
+        let scalars = |name, of: fn(&Component) -> &[f64]| {
+            Array::scalars(name, self.components.iter().flat_map(of).copied())
+        };
+        let tangents = self.components.iter().flat_map(|c| &c.tangent).copied();
+        let mut at_points = vec![
+            scalars("s", |c| &c.curve.s),
+            Array::vectors("tangent", tangents),
+            scalars("curvature", |c| &c.curvature),
+            scalars("stretch", |c| &c.stretch),
+            scalars("energy_density", |c| &c.curve.density),
+        ];
+        if self.has_twist() {
+            at_points.push(scalars("twist", |c| {
+                c.curve.twist.as_deref().unwrap_or_default()
+            }));
         }
-        let points: Vec<Vector3<f64>> = vertices
-            .iter()
-            .map(|v| Vector3::new(v.x, v.y, v.z))
-            .collect();
-        let rest = vertices[1].s - vertices[0].s;
+        let mut of_lines = Vec::new();
+        if self.is_link() {
+            at_points.push(Array::indices("component", self.component()));
+            let numbers = self.curves().map(|c| c.component as i64);
+            of_lines.push(Array::indices("component", numbers));
+        }
+        let curves: Vec<(usize, bool)> =
+            self.curves().map(|c| (c.points.len(), c.closed)).collect();
+        let points: Vec<_> = self.curves().flat_map(|c| &c.points).copied().collect();
+        vtk::lines(path, about, &points, &curves, [&at_points, &of_lines])
+    }
+}
+
+impl Component {
+    fn new(curve: Curve) -> Self {
+        let (points, n) = (&curve.points, curve.points.len());
+        let rest = curve.s[1] - curve.s[0];
         // edge i goes from vertex i to the next
-        let edges: Vec<Vector3<f64>> = (0..if closed { n } else { n - 1 })
+        let edges: Vec<Vector3<f64>> = (0..if curve.closed { n } else { n - 1 })
             .map(|i| points[(i + 1) % n] - points[i])
             .collect();
         let (mut tangent, mut curvature, mut stretch) = (Vec::new(), Vec::new(), Vec::new());
         for i in 0..n {
-            let before = if closed {
+            let before = if curve.closed {
                 Some(edges[(i + n - 1) % n])
             } else {
                 i.checked_sub(1).map(|k| edges[k])
@@ -184,31 +207,12 @@ impl Shape {
             curvature.push(2.0 * ta.cross(&tb).norm() / (1.0 + ta.dot(&tb)) / length);
             stretch.push(length / rest - 1.0);
         }
-        let of = |f: fn(&Vertex) -> f64| vertices.iter().map(f).collect::<Vec<f64>>();
-        Ok(Self {
-            closed,
-            time: vertices[0].time.unwrap_or(0.0),
-            s: of(|v| v.s),
-            energy_density: of(|v| v.energy_density),
-            twist: vertices.iter().map(|v| v.twist).collect(),
-            points,
+        Self {
+            curve,
             tangent,
             curvature,
             stretch,
-        })
-    }
-
-    fn write_vtk(&self, about: &About, path: &Path) -> Result<(), ViewError> {
-        let scalars = |name, values: &[f64]| Array::scalars(name, values.iter().copied());
-        let mut arrays = vec![
-            scalars("s", &self.s),
-            Array::vectors("tangent", self.tangent.iter().copied()),
-            scalars("curvature", &self.curvature),
-            scalars("stretch", &self.stretch),
-            scalars("energy_density", &self.energy_density),
-        ];
-        arrays.extend(self.twist.as_ref().map(|t| scalars("twist", t)));
-        vtk::line(path, about, &self.points, self.closed, &arrays)
+        }
     }
 }
 
@@ -217,37 +221,34 @@ mod tests {
     use super::*;
     use std::f64::consts::TAU;
 
-    fn arc(n: usize, closed: bool) -> Shape {
-        let vertex = |i: usize| {
-            let a = i as f64 / n as f64 * TAU;
-            Vertex {
-                component: 0,
-                cut: None,
-                time: None,
-                s: i as f64 * TAU * 4.0 / n as f64,
-                x: 5.0 * a.cos(),
-                y: 5.0 * a.sin(),
-                z: 0.0,
-                energy_density: 1.0,
-                twist: None,
-            }
-        };
+    fn arc(n: usize, closed: bool) -> Component {
         let count = if closed { n } else { n / 2 };
-        let vertices: Vec<Vertex> = (0..count).map(vertex).collect();
-        Shape::new(&vertices, closed, Path::new("here")).unwrap()
+        let point = |i: usize| {
+            let a = i as f64 / n as f64 * TAU;
+            Vector3::new(5.0 * a.cos(), 5.0 * a.sin(), 0.0)
+        };
+        let s = (0..count).map(|i| i as f64 * TAU * 4.0 / n as f64);
+        Component::new(Curve {
+            component: 1,
+            closed,
+            s: s.collect(),
+            points: (0..count).map(point).collect(),
+            density: vec![1.0; count],
+            twist: None,
+        })
     }
 
     #[test]
     fn a_stretched_circle_has_its_curvature_tangent_and_stretch() {
         for closed in [true, false] {
             let c = arc(200, closed);
-            for i in 1..c.points.len() - 1 {
+            let points = &c.curve.points;
+            for i in 1..points.len() - 1 {
                 assert!((c.curvature[i] - 0.2).abs() < 1e-4);
                 assert!((c.stretch[i] - 0.25).abs() < 1e-3);
-                assert!(c.tangent[i].dot(&c.points[i]).abs() < 1e-9);
+                assert!(c.tangent[i].dot(&points[i]).abs() < 1e-9);
             }
             assert_eq!(c.curvature[0] < 1e-9, !closed);
-            assert!(c.twist.is_none());
         }
     }
 }

@@ -50,11 +50,16 @@ impl Files<'_> {
 
 /// Rows of a table of the case.
 pub(super) fn table<T: DeserializeOwned>(case: &Path, name: &str) -> Result<Vec<T>, ViewError> {
-    data::read_csv(&case.join(name)).map_err(|e| match e {
+    data::read_csv(&case.join(name)).map_err(|e| as_damage(case, name, e))
+}
+
+/// What to say of a case whose table cannot be read.
+pub(super) fn as_damage(case: &Path, name: &str, error: ViewError) -> ViewError {
+    match error {
         ViewError::Missing { .. } => damaged(case, name, "not found"),
         ViewError::Table { reason, .. } => damaged(case, name, &reason),
         other => other,
-    })
+    }
 }
 
 pub(super) fn damaged(case: &Path, name: &str, reason: &str) -> ViewError {

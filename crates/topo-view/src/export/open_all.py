@@ -52,8 +52,14 @@ def opened(path):
             values = vtk_to_numpy(array).ravel().tolist()
             found["facts"][array.GetName()] = values[0] if len(values) == 1 else values
     if path.suffix == ".vtp":
-        corners = data.GetCell(0).GetPointIds()
-        found["corners"] = [corners.GetId(i) for i in range(corners.GetNumberOfIds())]
+        found["corners"] = []
+        for k in range(found["cells"]):
+            # the same object for every cell
+            ids = data.GetCell(k).GetPointIds()
+            found["corners"].append([ids.GetId(i) for i in range(ids.GetNumberOfIds())])
+        for name, of in (("component", at_points), ("component_of_lines", data.GetCellData())):
+            array = of.GetArray("component")
+            found[name] = None if array is None else vtk_to_numpy(array).tolist()
     return found
 
 

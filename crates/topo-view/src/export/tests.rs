@@ -20,6 +20,8 @@ use topo_lab::{
 
 /// Shorter than its ropelength, so that its tube is thinner than 2h.
 const FIBRE: &str = "[rod]\nknot = \"3_1\"\ntwist = 1.0\nslenderness = 25\n[rod.contact]\n[charge]\nduration = 0.02\n[discharge]\ncuts = \"all:2\"\nuntil_released = 0.6\nclosures = 4\n[accuracy]\nedges = 60\ntolerance = 1e-2\n";
+/// Two rings of 30 edges, the second cut.
+const LINK: &str = "[rod]\nlink = \"hopf\"\ntwist = 0.5\n[rod.contact]\n[charge]\nduration = 0.02\n[discharge]\nuntil_released = 0.1\nlongest = 0.2\ncuts = 0.75\n[accuracy]\nedges = 60\ntolerance = 1e-2\n";
 /// Followed until ring and lines are gone.
 const COLLOID: &str = "[nematic]\nradius = 5\nspacing = 1.0\nq = 2\n[charge]\ntolerance = 1e-4\n[discharge]\nuntil_released = 0.9999\n[accuracy]\ntolerance = 1e-3\n";
 const FLOW: &str = "[flow]\n";
@@ -54,7 +56,14 @@ fn only_case(out: &Path) -> PathBuf {
 }
 
 fn fibre(out: &Path) -> PathBuf {
-    let scene = ElasticScene::parse(FIBRE, Path::new("scene.toml")).unwrap();
+    rod(out, FIBRE)
+}
+
+fn rod(out: &Path, scene: &str) -> PathBuf {
+    let mut scene = ElasticScene::parse(scene, Path::new("scene.toml")).unwrap();
+    if scene.tie.is_some() {
+        (scene.tighten.n_variants, scene.tighten.n_kicks) = (0, 0);
+    }
     let table = KnotTable::builtin();
     run_sweep(&scene, &table, &SweepSettings::new(out), &|_| {}).unwrap();
     only_case(out)

@@ -11,7 +11,7 @@ use nalgebra::Vector3;
 use std::fmt::Write as _;
 use std::path::Path;
 
-/// Numbers at the points of a file.
+/// Numbers at the points of a file, or of its cells.
 pub struct Array {
     name: &'static str,
     n_components: usize,
@@ -44,8 +44,9 @@ impl Array {
         Self::new(name, 1, "UInt8", values.iter().map(|x| [*x]))
     }
 
-    fn indices(name: &'static str, values: impl IntoIterator<Item = u64>) -> Self {
-        Self::new(name, 1, "Int64", values.into_iter().map(u64::to_le_bytes))
+    /// One whole number a point.
+    pub fn indices(name: &'static str, values: impl IntoIterator<Item = i64>) -> Self {
+        Self::new(name, 1, "Int64", values.into_iter().map(i64::to_le_bytes))
     }
 
     fn new<const N: usize>(
@@ -75,18 +76,45 @@ pub fn line(
     closed: bool,
     arrays: &[Array],
 ) -> Result<(), ViewError> {
-    let n = points.len() as u64;
-    let corners = n + u64::from(closed);
+    lines(
+        path,
+        about,
+        points,
+        &[(points.len(), closed)],
+        [arrays, &[]],
+    )
+}
+
+/// Writes lines as `.vtp`: `curves` says how many of the points each goes through, and whether it is closed. The arrays are those of
+/// points and those of lines.
+pub fn lines(
+    path: &Path,
+    about: &About,
+    points: &[Vector3<f64>],
+    curves: &[(usize, bool)],
+    [at_points, of_lines]: [&[Array]; 2],
+) -> Result<(), ViewError> {
+    let (mut connectivity, mut offsets, mut first) = (Vec::new(), Vec::new(), 0);
+    for &(n, closed) in curves {
+        connectivity.extend(first..first + n as i64);
+        connectivity.extend(closed.then_some(first));
+        offsets.push(connectivity.len() as i64);
+        first += n as i64;
+    }
     let mut file = File::new("PolyData", "", about);
     file.open(&format!(
-        "Piece NumberOfPoints=\"{n}\" NumberOfVerts=\"0\" NumberOfLines=\"1\" NumberOfStrips=\"0\" NumberOfPolys=\"0\""
+        "Piece NumberOfPoints=\"{}\" NumberOfVerts=\"0\" NumberOfLines=\"{}\" NumberOfStrips=\"0\" NumberOfPolys=\"0\"",
+        points.len(),
+        curves.len()
     ));
-    file.block("PointData", arrays);
+    file.block("PointData", at_points);
+    if !of_lines.is_empty() {
+        file.block("CellData", of_lines);
+    }
     let points = Array::vectors("Points", points.iter().copied());
     file.block("Points", &[points]);
-    let connectivity = Array::indices("connectivity", (0..corners).map(|i| i % n));
-    let offsets = Array::indices("offsets", [corners]);
-    file.block("Lines", &[connectivity, offsets]);
+    let connectivity = Array::indices("connectivity", connectivity);
+    file.block("Lines", &[connectivity, Array::indices("offsets", offsets)]);
     file.write(path)
 }
 
@@ -109,11 +137,14 @@ pub fn cells<const N: usize>(
     file.block("PointData", arrays);
     let points = Array::vectors("Points", points.iter().copied());
     file.block("Points", &[points]);
-    let ends = (1..=corners.len()).map(|k| (N * k) as u64);
+    let ends = (1..=corners.len()).map(|k| (N * k) as i64);
     file.block(
         "Cells",
         &[
-            Array::indices("connectivity", corners.as_flattened().iter().copied()),
+            Array::indices(
+                "connectivity",
+                corners.as_flattened().iter().map(|c| *c as i64),
+            ),
             Array::indices("offsets", ends),
             Array::bytes("types", &vec![kind; corners.len()]),
         ],

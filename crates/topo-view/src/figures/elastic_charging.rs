@@ -155,12 +155,12 @@ impl<'a> Row<'a> {
             let tube = tube.ok_or_else(|| ViewError::Drawing {
                 reason: format!("{} is no curve", self.knot),
             })?;
-            canvas.tube(
+            canvas.tubes(
                 [x, top],
                 size,
                 [(x0 + x1) / 2.0, (y0 + y1) / 2.0],
                 unit,
-                &tube,
+                &[tube],
             )?;
             let style = Style::default().middle().size(8.5).color(QUIET);
             canvas.text(x + size[0] / 2.0, top + 83.0, &text::signed(*twist), style);

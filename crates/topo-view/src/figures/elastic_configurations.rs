@@ -115,8 +115,9 @@ fn name_rows(canvas: &mut Canvas, knots: &[&str]) {
 fn table(states: &[&State]) -> Table {
     let mut table = Table::new("knot,twist,s,x,y,z,energy_density");
     for state in states {
-        let curve = &state.shape.curve;
-        for ((s, p), e) in curve.s.iter().zip(&curve.points).zip(&curve.density) {
+        let curves = state.shape.curves.iter();
+        let all = curves.flat_map(|c| c.s.iter().zip(&c.points).zip(&c.density));
+        for ((s, p), e) in all {
             table.row(&[&state.knot], &[state.twist, *s, p.x, p.y, p.z, *e]);
         }
     }
@@ -134,7 +135,7 @@ fn row(context: &Context, sweep: &Sweep, knot: &str) -> Result<Vec<State>, ViewE
     let (mut twists, mut shapes) = (Vec::new(), Vec::new());
     for case in sweep.of(knot) {
         let folder = context.results.join("elastic").join(case.folder());
-        shapes.push(Shape::new(Curve::read(&folder.join("charged.csv"))?));
+        shapes.push(Shape::new(Curve::read_all(&folder.join("charged.csv"))?));
         twists.push(case.first().twist);
     }
     let mut order: Vec<usize> = (0..shapes.len()).collect();
@@ -153,7 +154,8 @@ fn finding(sweep: &Sweep, states: &[&State]) -> String {
     let densities = bounds(
         states
             .iter()
-            .flat_map(|s| s.shape.curve.density.iter().copied()),
+            .flat_map(|s| &s.shape.curves)
+            .flat_map(|curve| curve.density.iter().copied()),
     );
     format!(
         "{} states. Stored energy {} to {} E₀; energy density {} to {} E_b h².",

@@ -1,27 +1,27 @@
 //! Charged shapes as small tubes side by side: turned alike, drawn to one scale of length and colour.
 
-use crate::data::Curve;
+use crate::data::{Curve, points_of};
 use crate::error::ViewError;
 use crate::plot::camera;
-use crate::plot::canvas::tube_png;
+use crate::plot::canvas::tubes_png;
 use crate::plot::color::Scale;
-use crate::plot::tube::Tube;
+use crate::plot::tube::{Strand, Tube};
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
 /// A charged shape as it is seen.
 #[derive(Debug)]
 pub struct Shape {
-    /// The curve.
-    pub curve: Curve,
-    /// Its vertices, turned to the reader.
+    /// The curve, or those of a link.
+    pub curves: Vec<Curve>,
+    /// Their vertices one after the other, turned to the reader.
     pub view: Vec<Vector3<f64>>,
 }
 
 impl Shape {
     /// A shape that is not turned yet.
-    pub fn new(curve: Curve) -> Self {
+    pub fn new(curves: Vec<Curve>) -> Self {
         Self {
-            curve,
+            curves,
             view: Vec::new(),
         }
     }
@@ -42,12 +42,28 @@ impl Shape {
         scale: &Scale,
     ) -> Result<Vec<u8>, ViewError> {
         let [x0, y0, x1, y1] = camera::extent(&self.view);
-        let tube = Tube::new(&self.view, &self.curve.density, true, 1.0, scale);
-        let tube = tube.ok_or_else(|| ViewError::Drawing {
+        let tubes = tubes(&self.curves, &self.view, scale).ok_or_else(|| ViewError::Drawing {
             reason: format!("{name} is no curve"),
         })?;
-        tube_png(size, [(x0 + x1) / 2.0, (y0 + y1) / 2.0], unit, zoom, &tube)
+        let center = [(x0 + x1) / 2.0, (y0 + y1) / 2.0];
+        tubes_png(size, center, unit, zoom, &tubes)
     }
+}
+
+/// Curves as tubes of radius 1, coloured by their energy density; `view` has their vertices one after the other.
+pub fn tubes(curves: &[Curve], view: &[Vector3<f64>], scale: &Scale) -> Option<Vec<Tube>> {
+    let mut rest = view;
+    let mut strands = Vec::new();
+    for curve in curves {
+        let (vertices, others) = rest.split_at_checked(curve.points.len())?;
+        rest = others;
+        strands.push(Strand {
+            vertices,
+            values: &curve.density,
+            closed: curve.closed,
+        });
+    }
+    Tube::all(&strands, 1.0, scale)
 }
 
 /// Turns shapes, one after the other in an order, each like the nearest of those before it, and all so that they fill small squares.
@@ -55,7 +71,7 @@ pub fn turn_alike(shapes: &mut [Shape], order: &[usize], gap: impl Fn(usize, usi
     for (k, &i) in order.iter().enumerate() {
         let done = order[..k].iter();
         let near = done.min_by(|&&a, &&b| gap(a, i).total_cmp(&gap(b, i)));
-        let points = &shapes[i].curve.points;
+        let points = &points_of(&shapes[i].curves);
         let turn = near.and_then(|&j| camera::aligned(points, &shapes[j].view));
         let view = camera::view(points, &turn.unwrap_or_else(|| camera::flattest(points)));
         shapes[i].view = camera::flattened(view);
@@ -92,7 +108,8 @@ pub fn widest<'a>(shapes: impl IntoIterator<Item = &'a Shape>) -> f64 {
 
 /// Density that all but 1 % of the vertices stay below: a few hot spots must not darken all.
 pub fn high_density<'a>(shapes: impl IntoIterator<Item = &'a Shape>) -> f64 {
-    let all = shapes.into_iter().flat_map(|s| s.curve.density.iter());
+    let curves = shapes.into_iter().flat_map(|s| &s.curves);
+    let all = curves.flat_map(|curve| &curve.density);
     let mut all: Vec<f64> = all.copied().collect();
     all.sort_by(f64::total_cmp);
     all.get((0.99 * all.len() as f64) as usize)

@@ -22,9 +22,11 @@ fn struts_of_tight_knots_are_drawn_on_demand() {
         struts: true,
         ..plain
     };
-    let figure = *ALL.iter().find(|f| f.name == "knots-table").unwrap();
-    let [a, b] = [plain, with_struts].map(|c| draw(figure, &c).unwrap().preview);
-    assert_ne!(a, b);
+    for name in ["knots-table", "links-table"] {
+        let figure = *ALL.iter().find(|f| f.name == name).unwrap();
+        let [a, b] = [plain, with_struts].map(|c| draw(figure, &c).unwrap().preview);
+        assert_ne!(a, b, "{name}");
+    }
 }
 
 /// The files of a figure: all there, every row with all columns, every sign in the font, the quality said.

@@ -14,6 +14,8 @@ pub struct Size {
     pub height: u32,
 }
 
+/// Bytes before the first chunk of a PNG.
+const SIGNATURE: usize = 8;
 /// Index of pixels that stay as they are.
 const AS_BEFORE: u8 = N_COLORS as u8;
 
@@ -34,6 +36,21 @@ pub fn encode(size: Size, rate: u16, frames: &[Vec<u8>]) -> Result<Vec<u8>, View
     write(size, rate, &palette, &frames).map_err(|e| ViewError::Drawing {
         reason: format!("movie: {e}"),
     })
+}
+
+/// The first frame of an animated PNG, as a PNG that stands still: the same picture data without the chunks of the animation.
+pub fn still(movie: &[u8]) -> Vec<u8> {
+    let (signature, mut rest) = movie.split_at(movie.len().min(SIGNATURE));
+    let mut still = signature.to_vec();
+    // length of the data, type, data, checksum
+    while let Some(length) = rest.first_chunk().map(|n| u32::from_be_bytes(*n) as usize) {
+        let (chunk, after) = rest.split_at(rest.len().min(length.saturating_add(12)));
+        if !matches!(chunk.get(4..8), Some(b"acTL" | b"fcTL" | b"fdAT")) {
+            still.extend_from_slice(chunk);
+        }
+        rest = after;
+    }
+    still
 }
 
 fn write(
@@ -187,6 +204,23 @@ mod tests {
     }
 
     #[test]
+    fn a_still_is_the_first_frame() {
+        let frames = squares();
+        let bytes = still(&encode(SIZE, 24, &frames).unwrap());
+        let mut decoder = png::Decoder::new(std::io::Cursor::new(&bytes));
+        decoder.set_transformations(png::Transformations::EXPAND);
+        let mut reader = decoder.read_info().unwrap();
+        assert!(reader.info().animation_control().is_none());
+        let mut buffer = vec![0; reader.output_buffer_size().unwrap()];
+        reader.next_frame(&mut buffer).unwrap();
+        let opaque: Vec<u8> = buffer.chunks(4).flat_map(|p| [p[0], p[1], p[2]]).collect();
+        assert_eq!(opaque, frames[0]);
+        // a movie that was cut short, and none at all
+        assert_eq!(still(&bytes[..bytes.len() - 5]), bytes[..bytes.len() - 5]);
+        assert_eq!(still(b"PNG"), b"PNG");
+    }
+
+    #[test]
     fn a_movie_of_a_shaded_tube_is_small() {
         let size = Size {
             width: 320,
@@ -212,7 +246,7 @@ mod tests {
                     Tube::new(&view, &values, true, 1.0, &Scale::viridis(0.0, 99.0)).unwrap();
                 let mut canvas = Canvas::new(320.0, 240.0, 1.0);
                 canvas
-                    .tube([0.0; 2], [320.0, 240.0], [0.0; 2], 6.0, &tube)
+                    .tubes([0.0; 2], [320.0, 240.0], [0.0; 2], 6.0, &[tube])
                     .unwrap();
                 canvas.text(8.0, 20.0, &format!("*t* = {k}"), Style::default());
                 let pixels = canvas.pixels().unwrap();

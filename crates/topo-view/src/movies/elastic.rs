@@ -30,6 +30,10 @@ pub const MOVIE: Movie = Movie {
 const SHOWN: [(&str, f64); 4] = [("3_1", 0.0), ("7_4", 0.0), ("3_1", 2.0), ("7_4", 2.0)];
 /// The first frames show the charged state.
 const N_STILL: usize = 12;
+/// Left, top, width and height that a fibre has in its quarter: below the labels and above the energy.
+const ROOM: [f64; 4] = [0.0, 42.0, 480.0, 204.0];
+/// Width and height that it fills there at most.
+const FILLED: [f64; 2] = [440.0, 196.0];
 /// First time shown after the cut, in T_0.
 const FIRST: f64 = 0.01;
 
@@ -155,7 +159,7 @@ impl Actor {
         let unit = (0..=k)
             .map(|i| {
                 let [x0, y0, x1, y1] = camera::extent(&self.views[i]);
-                (440.0 / (x1 - x0 + 3.0)).min(232.0 / (y1 - y0 + 3.0))
+                (FILLED[0] / (x1 - x0 + 3.0)).min(FILLED[1] / (y1 - y0 + 3.0))
             })
             .fold(14.0, f64::min);
         let [x0, y0, x1, y1] = camera::extent(view);
@@ -164,7 +168,9 @@ impl Actor {
                 reason: format!("{} is no curve", self.label),
             })?;
         let middle = [(x0 + x1) / 2.0, (y0 + y1) / 2.0];
-        canvas.tube(corner, [480.0, 244.0], middle, unit, &tube)?;
+        let [left, top, width, height] = ROOM;
+        let place = [corner[0] + left, corner[1] + top];
+        canvas.tubes(place, [width, height], middle, unit, &[tube])?;
         let style = Style::default().bold().halo().size(16.0);
         canvas.text(corner[0] + 16.0, corner[1] + 18.0, &self.label, style);
         let style = Style::default().halo().size(13.0);
@@ -223,5 +229,48 @@ impl Actor {
             text::number(energy, 3),
             text::number(time, 3)
         )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A fibre along points, charged and released alike.
+    fn actor(points: impl Fn(f64) -> [f64; 2]) -> Actor {
+        let point = |i: i32| points(f64::from(i) / 99.0);
+        let frame = |time| ShapeFrame {
+            time,
+            vertices: (0..100)
+                .map(|i| Vector3::new(point(i)[0], point(i)[1], 0.0))
+                .collect(),
+            density: vec![0.5; 100],
+            energy: 1.0,
+        };
+        Actor::new("7_4", 2.0, vec![frame(None), frame(Some(1.0))]).unwrap()
+    }
+
+    /// The picture where the labels of the first quarter stand.
+    fn labels(actor: &Actor) -> Vec<u8> {
+        let mut canvas = Canvas::new(480.0, 342.0, 1.0);
+        actor.draw(&mut canvas, [0.0; 2], Some(1.0), 1.0).unwrap();
+        let pixels = canvas.pixels().unwrap();
+        let rows = pixels.data().chunks(4 * 480).take(41);
+        rows.flat_map(|row| row[..4 * 160].to_vec()).collect()
+    }
+
+    #[test]
+    fn a_wide_and_high_fibre_keeps_clear_of_the_labels() {
+        let straight = actor(|s| [40.0 * s, 0.0]);
+        // three sides of a rectangle and most of the fourth
+        let corners = actor(|s| match s {
+            s if s < 0.3 => [40.0 * s / 0.3, 0.0],
+            s if s < 0.5 => [40.0, 20.0 * (s - 0.3) / 0.2],
+            s if s < 0.8 => [40.0 * (0.8 - s) / 0.3, 20.0],
+            s => [0.0, 20.0 - 18.0 * (s - 0.8) / 0.2],
+        });
+        let expected = labels(&straight);
+        assert!(expected.chunks(4).any(|p| p[0] < 100));
+        assert!(labels(&corners) == expected);
     }
 }

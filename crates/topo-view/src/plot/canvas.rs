@@ -117,17 +117,17 @@ impl Canvas {
         ));
     }
 
-    /// A tube centred on `center` (view coordinates) in the box at `at` of `size`, at `scale`
+    /// Tubes centred on `center` (view coordinates) in the box at `at` of `size`, at `scale`
     /// units of the canvas per unit of length.
-    pub fn tube(
+    pub fn tubes(
         &mut self,
         at: [f64; 2],
         size: [f64; 2],
         center: [f64; 2],
         scale: f64,
-        tube: &Tube,
+        tubes: &[Tube],
     ) -> Result<(), ViewError> {
-        let image = tube_png(size, center, scale, self.zoom, tube)?;
+        let image = tubes_png(size, center, scale, self.zoom, tubes)?;
         self.image(at, size, &image);
         Ok(())
     }
@@ -272,31 +272,32 @@ impl Canvas {
     }
 }
 
-/// PNG of a tube, drawn at the pixels of the final picture.
-pub fn tube_png(
+/// PNG of tubes, drawn at the pixels of the final picture.
+pub fn tubes_png(
     size: [f64; 2],
     center: [f64; 2],
     scale: f64,
     zoom: f64,
-    tube: &Tube,
+    tubes: &[Tube],
 ) -> Result<Vec<u8>, ViewError> {
-    tube_and_rods_png(size, center, scale, zoom, tube, &Rods::default())
+    tubes_and_rods_png(size, center, scale, zoom, tubes, &Rods::default())
 }
 
 /// The same with thin rods, such as struts.
-pub fn tube_and_rods_png(
+pub fn tubes_and_rods_png(
     size: [f64; 2],
     center: [f64; 2],
     scale: f64,
     zoom: f64,
-    tube: &Tube,
+    tubes: &[Tube],
     rods: &Rods,
 ) -> Result<Vec<u8>, ViewError> {
-    let pixmap = raster::draw(tube, rods, &window(size, center, scale, zoom)).ok_or_else(|| {
-        ViewError::Drawing {
-            reason: "tube without pixels".to_owned(),
-        }
-    })?;
+    let pixmap =
+        raster::draw(tubes, rods, &window(size, center, scale, zoom)).ok_or_else(|| {
+            ViewError::Drawing {
+                reason: "tube without pixels".to_owned(),
+            }
+        })?;
     render::png(&pixmap)
 }
 

@@ -123,6 +123,11 @@ pub fn fixed(value: f64, places: usize) -> String {
     }
 }
 
+/// The same of a number that may be missing: then a dash.
+pub fn optional(value: Option<f64>, places: usize) -> String {
+    value.map_or_else(|| "–".to_owned(), |v| fixed(v, places))
+}
+
 /// How often something happens.
 pub fn times(n: usize) -> String {
     match n {

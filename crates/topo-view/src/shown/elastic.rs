@@ -132,3 +132,6 @@ impl Shown for Elastic {
         &[shapes::PICTURE]
     }
 }
+
+#[cfg(test)]
+mod tests;

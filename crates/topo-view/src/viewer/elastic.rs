@@ -2,7 +2,7 @@
 
 use super::Data;
 use super::bytes::{coordinates, reach, shades, shorts};
-use crate::data::{Case, Curve, Sweep, snapshots};
+use crate::data::{Case, Curve, Sweep, points_of, snapshots};
 use crate::error::ViewError;
 use crate::plot::camera;
 use crate::plot::color::Scale;
@@ -13,6 +13,8 @@ use std::path::Path;
 
 /// Points kept of each shape.
 const N_POINTS: usize = 100;
+/// Fewest of a component of a link, if it has so many.
+const FEWEST_POINTS: usize = 30;
 
 /// What the viewer needs, a file a knot, if there is an elastic sweep.
 pub fn data(results: &Path) -> Result<Option<Data>, ViewError> {
@@ -73,45 +75,72 @@ fn summary(case: &Case, top: f64) -> Value {
     })
 }
 
+/// Number of points kept of each curve: of all together [`N_POINTS`], but no short component becomes a polygon.
+fn kept(charged: &[Curve]) -> Vec<usize> {
+    let lengths = charged.iter().map(|curve| curve.points.len());
+    let all: usize = lengths.clone().sum();
+    lengths
+        .map(|n| (N_POINTS * n / all).max(FEWEST_POINTS).min(n))
+        .collect()
+}
+
+/// A shape of a state: its time, curves, and their vertices turned to the reader one after the other.
+struct Shown {
+    time: String,
+    curves: Vec<Curve>,
+    view: Vec<Vector3<f64>>,
+}
+
 /// The shapes of a state.
 fn state(results: &Path, case: &Case) -> Result<Value, ViewError> {
     let folder = results.join("elastic").join(case.folder());
-    let charged = Curve::read(&folder.join("charged.csv"))?;
+    let charged = Curve::read_all(&folder.join("charged.csv"))?;
     let row = case.first();
-    let mut shots = snapshots(&folder.join("snapshots.csv"))?;
+    let mut shots = snapshots(&folder)?;
     shots.retain(|s| (s.cut - row.cut).abs() < 1e-9);
     // seen from where both the knot and the released fibre are wide
-    let mut seen: Vec<&[Vector3<f64>]> = vec![&charged.points];
-    seen.extend(shots.last().map(|s| &s.curve.points[..]));
+    let mut seen = vec![points_of(&charged)];
+    seen.extend(shots.last().map(|s| points_of(&s.curves)));
+    let seen: Vec<&[Vector3<f64>]> = seen.iter().map(Vec::as_slice).collect();
     let turn = camera::flattest_of(&seen);
-    let mut shapes: Vec<(String, Vec<Vector3<f64>>, Vec<f64>)> = vec![(
-        "0".to_owned(),
-        camera::view(&charged.points, &turn),
-        charged.density,
-    )];
-    for s in shots {
-        shapes.push((
-            text::significant(s.time, 2),
-            camera::view(&s.curve.points, &turn),
-            s.curve.density,
-        ));
-    }
-    let density = shapes.iter().flat_map(|s| s.2.iter().copied());
+    let n = kept(&charged);
+    let all = shots
+        .into_iter()
+        .map(|s| (text::significant(s.time, 2), s.curves));
+    let shapes: Vec<Shown> = std::iter::once(("0".to_owned(), charged))
+        .chain(all)
+        .map(|(time, curves)| Shown {
+            time,
+            view: camera::view(&points_of(&curves), &turn),
+            curves,
+        })
+        .collect();
+    let curves = || shapes.iter().flat_map(|s| &s.curves);
+    let density = curves().flat_map(|c| c.density.iter().copied());
     let high = density.fold(1e-9, f64::max);
     let colors = Scale::viridis_root(high);
-    let scale = shapes.iter().map(|s| reach(&s.1)).fold(1e-9, f64::max);
+    let scale = shapes.iter().map(|s| reach(&s.view)).fold(1e-9, f64::max);
     let (mut xyz, mut w) = (Vec::new(), Vec::new());
-    for (_, points, density) in &shapes {
-        for k in 0..N_POINTS {
-            // the charged knot is closed, so that its last point is not its first
-            let i = k * (points.len() - 1) / (N_POINTS - 1);
-            xyz.push(points[i]);
-            w.push(colors.fraction(density[i]));
+    for shape in &shapes {
+        let mut first = 0;
+        for (curve, n) in shape.curves.iter().zip(&n) {
+            for k in 0..*n {
+                // a closed curve's last point is not its first
+                let i = k * (curve.points.len() - 1) / (n - 1);
+                xyz.push(shape.view[first + i]);
+                w.push(colors.fraction(curve.density[i]));
+            }
+            first += curve.points.len();
         }
     }
-    let times: Vec<&str> = shapes.iter().map(|s| s.0.as_str()).collect();
+    let closed: Vec<Vec<bool>> = shapes
+        .iter()
+        .map(|s| s.curves.iter().map(|c| c.closed).collect())
+        .collect();
+    let times: Vec<&str> = shapes.iter().map(|s| s.time.as_str()).collect();
     Ok(json!({
-        "n": N_POINTS,
+        "n": n,
+        "closed": closed,
         "radius": 1.0,
         "scale": scale,
         "ticks": root_ticks(high),

@@ -423,6 +423,51 @@ fn values_out_of_range_are_refused() {
             "[discharge.ends]\nmotions = [{ velocity = [1, 0, 0] }, {}]",
             ["line 3: discharge.ends =", "pin or clamp"],
         ),
+        (
+            "[discharge.load]\nspring = -0.5",
+            ["line 4: discharge.load.spring = -0.5", "zero or above"],
+        ),
+        (
+            "[discharge.load]\nspring = 0.5\ndashpot = [0.1, -2]",
+            ["line 5: discharge.load.dashpot = -2", "zero or above"],
+        ),
+        (
+            "[discharge.load]\nrest_length = 2.0",
+            ["line 3: discharge.load =", "give one of them"],
+        ),
+        (
+            "[discharge.load]\nbetween = \"last\"\ndashpot = 1",
+            [
+                "line 4: discharge.load.between = \"last\"",
+                "pin or clamp it in `discharge.ends`",
+            ],
+        ),
+        (
+            "[discharge.ends]\nconditions = [\"free\", \"clamped\"]\n[discharge.load]\nbetween = \"last\"\ndashpot = 1",
+            [
+                "line 6: discharge.load.between = \"last\"",
+                "nothing would hold the rod",
+            ],
+        ),
+        (
+            "[discharge.load]\ndashpot = 1\ndirection = [0, 0, 1]",
+            [
+                "line 5: discharge.load.direction = [0, 0, 1]",
+                "leave it out",
+            ],
+        ),
+        (
+            "[discharge.ends]\nconditions = [\"pinned\", \"free\"]\n[discharge.load]\nbetween = \"last\"\nspring = 1\nrest_length = 3",
+            ["line 5: discharge.load =", "`direction`"],
+        ),
+        (
+            "twist = 1\n[charge.twisting]\nover = 0",
+            ["line 5: charge.twisting.over = 0", "above zero"],
+        ),
+        (
+            "[charge.twisting]\nover = 2",
+            ["line 3: charge.twisting", "give `twist`"],
+        ),
     ]);
 }
 

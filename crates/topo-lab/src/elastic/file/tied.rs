@@ -53,6 +53,7 @@ impl RodTable {
     pub(super) fn tie(
         &self,
         document: &Document<'_>,
+        is_pulled: bool,
     ) -> Result<(Vec<String>, Option<Tie>), LabError> {
         let there: Vec<&str> = KEYS.into_iter().filter(|key| document.has(key)).collect();
         if let [first, second, ..] = there[..] {
@@ -63,7 +64,15 @@ impl RodTable {
             Names::One(name) => vec![name.clone()],
             Names::List(names) => names.clone(),
         };
-        let tie = |what| Tie::of(what, self.tighten);
+        if is_pulled && self.curve.is_none() {
+            let remedy = "a closed fibre has no ends to pull: give an open curve as `rod.curve`, or leave the table out";
+            return Err(document.wrong("pull", document.written("pull"), remedy));
+        }
+        if is_pulled && self.tighten == Some(true) {
+            let remedy = "an open fibre that is pulled is taken as it is: leave it out";
+            return Err(document.wrong("rod.tighten", true, remedy));
+        }
+        let tie = |what| Tie::of(what, self.tighten).map(|tie| tie.pulled(is_pulled));
         if let Some(names) = &self.knot {
             return Ok((list(names), tie(What::Knots)));
         }

@@ -37,6 +37,31 @@ const BESIDE: &[(&str, &str)] = &[
         "discharge.ends.motions.torque",
         "discharge.ends.conditions = [\"free\", \"clamped\"]",
     ),
+    (
+        "discharge.load.between",
+        "discharge.ends.conditions = [\"clamped\", \"free\"]",
+    ),
+    ("discharge.load.between", "discharge.load.dashpot = 1.0"),
+    ("discharge.load.spring", "discharge.load.dashpot = 1.0"),
+    ("discharge.load.dashpot", "discharge.load.spring = 1.0"),
+    ("discharge.load.rest_length", "discharge.load.spring = 1.0"),
+    (
+        "discharge.load.direction",
+        "discharge.ends.conditions = [\"clamped\", \"free\"]",
+    ),
+    ("discharge.load.direction", "discharge.load.spring = 1.0"),
+    (
+        "discharge.load.direction",
+        "discharge.load.rest_length = 1.0",
+    ),
+    (
+        "discharge.load.direction",
+        "discharge.load.between = \"last\"",
+    ),
+    ("pull.duration", "pull.grips = [{}, {}]"),
+    ("pull.outputs", "pull.grips = [{}, {}]"),
+    ("pull.outputs", "pull.duration = 2.0"),
+    ("pull.grips", "pull.duration = 2.0"),
     ("nematic.particle", "switch.to = \"keep\""),
     ("material.flow_alignment", "flow = {}"),
     ("material.viscosity", "flow = {}"),
@@ -65,6 +90,13 @@ fn with(base: &str, key: &str, table: &str, line: &str) -> String {
         merge(
             &mut scene,
             toml::from_str(&dotted).unwrap_or_else(|e| panic!("{dotted}: {e}")),
+        );
+    }
+    if key.starts_with("pull.") {
+        crate::scene::remove("rod.knot", &mut scene);
+        merge(
+            &mut scene,
+            toml::from_str("rod.curve = \"open.csv\"").unwrap(),
         );
     }
     // what is tied is said once
@@ -100,6 +132,10 @@ fn examples_and_defaults_of_the_reference_are_what_it_says() {
         let mut n_defaults = 0;
         for row in rows(battery) {
             let key = row.key();
+            // what a grip does, it does together with its condition: the example of the whole shows it
+            if key.starts_with("pull.grips.") {
+                continue;
+            }
             let text = with(base, &key, &row.table, &row.example);
             let example = parsed(&text).unwrap_or_else(|e| panic!("{key}: {e}"));
             // what stands in a form has no default of its own

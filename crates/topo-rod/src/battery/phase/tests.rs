@@ -10,8 +10,9 @@ use super::*;
 use crate::battery::tests::{hopf_link, trefoil};
 use crate::model::PARTS;
 use crate::{
-    Accuracy, ChargeSettings, ContactParameters, CutSite, DischargeSettings, EndMotion, Ends,
-    FrictionParameters, Guards, IntegratorKind, RodEnds, RodParameters,
+    Accuracy, ChargeSettings, ContactParameters, CutSite, DischargeSettings, EndLoad, EndMotion,
+    Ends, FrictionParameters, Grip, Guards, IntegratorKind, PullSettings, Ramp, RodEnds,
+    RodParameters, TimeCourse, Twisting,
 };
 
 /// A rod and what is done with it.
@@ -21,6 +22,7 @@ struct Setup {
     accuracy: Accuracy,
     discharge: DischargeSettings,
     is_link: bool,
+    twisting: Option<Twisting>,
 }
 
 fn setup(integrator: IntegratorKind, twist: Option<f64>, rubs: bool) -> Setup {
@@ -42,6 +44,7 @@ fn setup(integrator: IntegratorKind, twist: Option<f64>, rubs: bool) -> Setup {
             ..DischargeSettings::default()
         },
         is_link: false,
+        twisting: None,
     }
 }
 
@@ -94,6 +97,7 @@ impl Setup {
             .with_checkpoint(&folder.join("charge"), interval);
         let charge = ChargeSettings {
             duration: 0.5,
+            twisting: self.twisting,
             ..ChargeSettings::default()
         };
         let charged = self.battery().charge(&charge, &mut hooks)?;
@@ -179,6 +183,120 @@ fn law_resumed_rods_end_with_the_same_bits() {
             );
         }
     }
+}
+
+/// A rod twisted in time, which then works on a load: stopped before, while and after it is twisted, and in its discharge.
+#[test]
+fn law_resumed_work_ends_with_the_same_bits() {
+    for integrator in [IntegratorKind::Ros34pw2, IntegratorKind::Rkc2] {
+        let mut setup = setup(integrator, Some(1.0), true);
+        setup.twisting = Some(Twisting { over: 0.5 });
+        setup.discharge.longest = 1.0;
+        setup.discharge.load = Some(EndLoad {
+            spring: 1e-3,
+            dashpot: 0.02,
+            ..EndLoad::default()
+        });
+        let undisturbed = folder();
+        let reports = setup.run(undisturbed.path(), None).unwrap();
+        let (_, charge) = kept(undisturbed.path(), "charge");
+        let scale = topo_core::reference_time(charge.1.length());
+        let begun = |t: f64| charge.3.curve.time().iter().filter(|s| **s < t).count() as u64;
+        assert!(charge.4.tied.is_some() && scale > 0.0);
+        let [begins, ends] = [begun(0.5 - 1e-9), begun(1.0 - 1e-9)];
+        let charge = [
+            1,
+            begins - 1,
+            begins,
+            begins + 1,
+            begins + 5,
+            ends - 1,
+            ends,
+            ends + 1,
+            ends + 4,
+        ];
+        let stopped = folder();
+        let stops = charge.map(|step| (Phase::Charge, step));
+        let discharge = [1, 7, 20].map(|step| (Phase::Discharge, step));
+        for stop in stops.into_iter().chain(discharge) {
+            setup.run(stopped.path(), Some(stop)).unwrap();
+        }
+        assert_eq!(
+            setup.run(stopped.path(), None).unwrap(),
+            reports,
+            "{integrator:?}"
+        );
+        assert!(reports[1].contains("peak_power"));
+    }
+}
+
+/// An open rod that is pulled, turned and let go at one end: stopped before, at and after each corner of its courses.
+#[test]
+fn law_resumed_pulls_end_with_the_same_bits() {
+    let setup = setup(IntegratorKind::Ros34pw2, Some(0.0), true);
+    let arc = (0..=40).map(|k| {
+        let s = 0.1 * f64::from(k);
+        topo_core::Vector3::new(s.cos(), s.sin(), 0.1 * s)
+    });
+    let arc = topo_core::Polyline::new(arc.collect(), false).unwrap();
+    let battery = RodBattery::open(&setup.rod, &setup.accuracy, Guards::default(), &arc).unwrap();
+    let none = TimeCourse::default;
+    let drawn = Grip {
+        condition: crate::EndCondition::Clamped,
+        displacement: [
+            TimeCourse::Table(vec![[0.0, 0.0], [0.1, 1.0], [0.2, 1.0]]),
+            none(),
+            none(),
+        ],
+        rotation: TimeCourse::Ramp(Ramp {
+            to: 1.0,
+            over: 0.15,
+        }),
+        released: Some(0.3),
+        ..Grip::default()
+    };
+    let held = Grip {
+        condition: crate::EndCondition::Clamped,
+        ..Grip::default()
+    };
+    let settings = PullSettings {
+        grips: [held, drawn],
+        duration: 0.4,
+        outputs: 10,
+    };
+    let run = |folder: &Path, stop: Option<u64>| {
+        let interrupt = Interrupt::new();
+        let mut stopping = |p: &Progress| {
+            if stop == Some(p.step) {
+                interrupt.request();
+            }
+        };
+        let mut hooks = RunHooks::new(&interrupt)
+            .with_progress(&mut stopping)
+            .with_checkpoint(&folder.join("pull"), 1e9);
+        let pulled = battery.pull(&settings, &mut hooks).unwrap();
+        let record = pulled.record();
+        let samples: Vec<_> = record
+            .samples
+            .iter()
+            .map(|s| (s.time, s.work, s.grips))
+            .collect();
+        (
+            serde_json::to_string(&record.report).unwrap(),
+            format!("{samples:?}"),
+            record.curve.time().to_vec(),
+        )
+    };
+    let undisturbed = run(folder().path(), None);
+    let at = |t: f64| undisturbed.2.iter().filter(|s| **s < t - 1e-9).count() as u64;
+    let stopped = folder();
+    for corner in [0.1, 0.15, 0.2, 0.3].map(at) {
+        for step in [corner - 1, corner, corner + 1] {
+            run(stopped.path(), Some(step));
+        }
+    }
+    let resumed = run(stopped.path(), None);
+    assert_eq!((resumed.0, resumed.1), (undisturbed.0, undisturbed.1));
 }
 
 /// A link stopped in its charge and in its discharge, with friction, and curved and twisted at rest.

@@ -1,6 +1,6 @@
 //! Every file of every kind of export, opened by VTK's own readers and numpy.
 
-use super::{ALL, CELL, COLLOID, FLOW, colloid, fibre, report, write};
+use super::{ALL, CELL, COLLOID, FLOW, LINK, colloid, fibre, report, rod, write};
 use crate::data::read_csv;
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, BTreeSet};
@@ -178,6 +178,7 @@ fn python_vtk_opens_every_file_of_every_export() {
     };
     let cases = [
         ("rod", fibre(&dir.path().join("rod")), false),
+        ("link", rod(&dir.path().join("link"), LINK), false),
         colloid("still", COLLOID, false, false),
         colloid("still-fields", COLLOID, true, false),
         colloid("flow", &flowing, false, true),
@@ -201,6 +202,10 @@ fn python_vtk_opens_every_file_of_every_export() {
         let report = &report[to.to_str().unwrap()];
         if *name == "rod" {
             check_fibre(report);
+            continue;
+        }
+        if *name == "link" {
+            check_link(report);
             continue;
         }
         let wanted = wanted_of_colloid(case, *name != "cell", *flow);
@@ -247,9 +252,9 @@ fn check_fibre(report: &Value) {
     check(report, &wanted, &facts);
     // the charged fibre ends where it began, a cut one does not
     let around: Vec<u64> = (0..60).chain([0]).collect();
-    assert_eq!(report["charged.vtp"]["corners"], json!(around));
+    assert_eq!(report["charged.vtp"]["corners"], json!([around]));
     let along: Vec<u64> = (0..61).collect();
-    assert_eq!(report["discharge-2-00.vtp"]["corners"], json!(along));
+    assert_eq!(report["discharge-2-00.vtp"]["corners"], json!([along]));
     let facts = |file: &str| report[file]["facts"].clone();
     assert_eq!(facts("charged.vtp")["state"], "charged");
     assert_eq!(facts("discharge-1-01.vtp")["state"], "discharging");
@@ -260,4 +265,35 @@ fn check_fibre(report: &Value) {
     assert_eq!(archive["facts"]["discharge2_closed"], false);
     assert_eq!(archive["arrays"]["charged_points"], json!([60, 3]));
     assert!(archive["not_finite"].as_array().unwrap().is_empty());
+}
+
+/// Two loops; one of them is cut.
+fn check_link(report: &Value) {
+    let arrays = json!({ "s": 1, "tangent": 3, "curvature": 1, "stretch": 1, "energy_density": 1, "twist": 1, "component": 1 });
+    let line = |points: usize, time: Option<f64>| Wanted {
+        points,
+        cells: 2,
+        arrays: arrays.clone(),
+        time,
+    };
+    let mut wanted = All::from([("charged.vtp".to_owned(), line(60, None))]);
+    for entry in report["discharge-1.pvd"]["files"].as_array().unwrap() {
+        let file = entry[1].as_str().unwrap().to_owned();
+        wanted.insert(file, line(61, entry[0].as_f64()));
+    }
+    assert!(wanted.len() > 2);
+    check(report, &wanted, &[("knot", json!("L2a1"))]);
+    let ring = |from: u64| (from..from + 30).chain([from]).collect::<Vec<u64>>();
+    let open: Vec<u64> = (30..61).collect();
+    let (charged, cut) = (&report["charged.vtp"], &report["discharge-1-00.vtp"]);
+    assert_eq!(charged["corners"], json!([ring(0), ring(30)]));
+    assert_eq!(cut["corners"], json!([ring(0), open]));
+    for (file, n) in [(charged, 30), (cut, 31)] {
+        let component = [vec![1; 30], vec![2; n]].concat();
+        assert_eq!(file["component"], json!(component));
+        assert_eq!(file["component_of_lines"], json!([1, 2]));
+    }
+    let archive = &report["fibre.npz"]["arrays"];
+    assert_eq!(archive["charged_closed"], json!([2]));
+    assert_eq!(archive["discharge1_component"], json!([61]));
 }

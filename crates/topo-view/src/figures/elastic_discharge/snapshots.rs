@@ -2,12 +2,12 @@
 
 use super::super::figure::Context;
 use super::super::series::{bounds, root_ticks};
-use crate::data::{self, Case, Snapshot, Sweep};
+use super::super::shapes::tubes;
+use crate::data::{self, Case, Snapshot, Sweep, points_of};
 use crate::error::ViewError;
 use crate::plot::canvas::Canvas;
 use crate::plot::color::{QUIET, Scale};
 use crate::plot::style::Style;
-use crate::plot::tube::Tube;
 use crate::plot::{camera, text};
 use nalgebra::Vector3;
 use std::path::Path;
@@ -127,7 +127,8 @@ fn rows<'a>(results: &Path, sweep: &'a Sweep) -> Result<Vec<Row<'a>>, ViewError>
 fn high_density(rows: &[Row<'_>]) -> f64 {
     let shots = rows.iter().flat_map(|row| &row.strip);
     let mut sorted: Vec<f64> = shots
-        .flat_map(|s| s.0.curve.density.iter().copied())
+        .flat_map(|s| &s.0.curves)
+        .flat_map(|curve| curve.density.iter().copied())
         .collect();
     sorted.sort_by(f64::total_cmp);
     sorted
@@ -178,19 +179,16 @@ impl Layout<'_> {
         for (shot, view) in shots {
             let [w, h] = span(view);
             let [x0, y0, x1, y1] = camera::extent(view);
-            let tube =
-                Tube::new(view, &shot.curve.density, false, 1.0, scale).ok_or_else(|| {
-                    ViewError::Drawing {
-                        reason: format!("snapshot at {} is no curve", shot.time),
-                    }
-                })?;
+            let tubes = tubes(&shot.curves, view, scale).ok_or_else(|| ViewError::Drawing {
+                reason: format!("snapshot at {} is no curve", shot.time),
+            })?;
             let side = [w * unit, h * unit];
-            canvas.tube(
+            canvas.tubes(
                 [x, middle - side[1] / 2.0],
                 side,
                 [(x0 + x1) / 2.0, (y0 + y1) / 2.0],
                 unit,
-                &tube,
+                &tubes,
             )?;
             let time = time_label(shot.time);
             canvas.text(
@@ -254,14 +252,11 @@ fn span(view: &[Vector3<f64>]) -> [f64; 2] {
 
 /// Snapshots of the first cut, spread evenly over those stored, each turned like the last.
 fn strip(results: &Path, case: &Case) -> Result<Strip, ViewError> {
-    let path = results
-        .join("elastic")
-        .join(case.folder())
-        .join("snapshots.csv");
+    let folder = results.join("elastic").join(case.folder());
     let cut = case.first().cut;
-    let mut shots = data::snapshots(&path)?;
+    let mut shots = data::snapshots(&folder)?;
     shots.retain(|s| (s.cut - cut).abs() < 1e-9);
-    let energies = data::series(&path.with_file_name("series.csv"))?;
+    let energies = data::series(&folder.join("series.csv"))?;
     let energies: Vec<(f64, f64)> = energies
         .iter()
         .filter(|m| (m.cut - cut).abs() < 1e-9)
@@ -271,7 +266,7 @@ fn strip(results: &Path, case: &Case) -> Result<Strip, ViewError> {
     // Turned backwards from the straight end, which lies along x, to the knot.
     let mut strip = Strip::new();
     for shot in shots.into_iter().rev() {
-        let points = &shot.curve.points;
+        let points = &points_of(&shot.curves);
         let like = strip.last().and_then(|(_, v)| camera::aligned(points, v));
         let view = camera::view(points, &like.unwrap_or_else(|| camera::flattest(points)));
         strip.push((shot, view));
@@ -291,7 +286,7 @@ mod tests {
             .map(|k| Snapshot {
                 cut: 0.0,
                 time: f64::from(k),
-                curve: Curve::default(),
+                curves: vec![Curve::default()],
             })
             .collect();
         // Nothing happens until 20, and nothing after 30.

@@ -41,7 +41,6 @@ fn draw(cases: &Cases) -> Result<Option<Drawn>, ViewError> {
     let rows = cases.first_rows();
     let rows: Vec<&Row> = rows
         .into_iter()
-        .filter(|r| r.number("components").is_none_or(|n| n == 1.0))
         .filter(|r| cases.case_folder(r).join("charged.csv").exists())
         .collect();
     if rows.is_empty() {
@@ -86,7 +85,7 @@ fn draw(cases: &Cases) -> Result<Option<Drawn>, ViewError> {
 fn turned(cases: &Cases, rows: &[&Row], is_knot_by_knot: bool) -> Result<Vec<Shape>, ViewError> {
     let shape = |row: &&Row| {
         let path = cases.case_folder(row).join("charged.csv");
-        Curve::read(&path).map(Shape::new)
+        Curve::read_all(&path).map(Shape::new)
     };
     let mut shapes: Vec<Shape> = rows.par_iter().map(shape).collect::<Result<_, _>>()?;
     if is_knot_by_knot {
@@ -135,7 +134,7 @@ fn picture(
                 .image(&c.case, [side; 2], unit, canvas.zoom(), &scale)
         })
         .collect::<Result<Vec<_>, _>>()?;
-    let mut table = Table::new("case,s,x,y,z,energy_density");
+    let mut table = Table::new("case,component,s,x,y,z,energy_density");
     for (cell, image) in cells.iter().zip(&images) {
         let at = [
             left + pitch * cell.column as f64 + 0.5 * (pitch - side),
@@ -145,9 +144,11 @@ fn picture(
         let style = Style::default().middle().size(8.0);
         let below = at[1] + side + 8.0;
         canvas.text(at[0] + 0.5 * side, below, &cell.label, style);
-        let curve = &cell.shape.curve;
-        for ((s, p), e) in curve.s.iter().zip(&curve.points).zip(&curve.density) {
-            table.row(&[&cell.case], &[*s, p.x, p.y, p.z, *e]);
+        for curve in &cell.shape.curves {
+            let component = curve.component.to_string();
+            for ((s, p), e) in curve.s.iter().zip(&curve.points).zip(&curve.density) {
+                table.row(&[&cell.case, &component], &[*s, p.x, p.y, p.z, *e]);
+            }
         }
     }
     for (line, name) in names {
