@@ -28,7 +28,9 @@ fn results() -> tempfile::TempDir {
     let dir = tempfile::tempdir().unwrap();
     synthetic::results(dir.path(), 2, &[-1.0, 0.0, 1.0]);
     synthetic::nematic(dir.path());
-    std::fs::remove_dir_all(dir.path().join("elastic-contact-range")).unwrap();
+    for variant in ["elastic-contact-range", "elastic-breaking"] {
+        std::fs::remove_dir_all(dir.path().join(variant)).unwrap();
+    }
     mark(&dir.path().join("elastic"), &Elastic);
     mark(&dir.path().join("nematic"), &Colloid);
     dir
