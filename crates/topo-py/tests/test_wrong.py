@@ -80,7 +80,7 @@ ARGUMENTS = {
     "charge": (lambda: topo.Colloid(q="one"), "q", "one", "give a whole number from 0 to 10000"),
     "anchoring": (lambda: topo.Colloid(radius=5, anchoring="strog"), "anchoring", '"strog"', 'did you mean "strong"?'),
     "material": (lambda: topo.Colloid(radius=5, material={"A": 1.0}), "material.A", "1.0", "did you mean `a`?"),
-    "precision": (lambda: topo.Colloid(radius=5, precision="singel"), "precision", '"singel"', 'did you mean "single"?'),
+    "precision": (lambda: topo.Colloid(radius=5, precision="singles"), "precision", '"singles"', 'did you mean "single"?'),
     "tilts": (lambda: topo.Colloid(radius=5, spacing=1.0).charge(tilts=0.1), "tilts", "0.1", "a list stands in brackets: [0.1]"),
 }
 
