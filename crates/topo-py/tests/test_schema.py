@@ -13,6 +13,13 @@ SCHEMA = json.loads((ROOT / "docs/scene.schema.json").read_text(encoding="utf-8"
 VALIDATOR = jsonschema.Draft7Validator(SCHEMA)
 BASES = {"rod": {"rod": {"knot": "3_1"}}, "nematic": {"nematic": {"field": {"vector": [0, 0, 1], "anisotropy": 1}}}}
 
+# what a table needs besides the key of the example
+NEEDED = {
+    "charge.break": {"charge": {"break": {"criterion": "energy", "threshold": 1.0}}},
+    "si": {"si": {"radius": 1e-3, "bending_modulus": 1e7, "viscosity": 1e4}},
+    "pull": {"pull": {"grips": [{}, {}], "duration": 2.0}},
+}
+
 
 def merged(into, more):
     for key, value in more.items():
@@ -31,7 +38,7 @@ def examples():
                 table = (re.findall(r"\[(.*)\]", line) or [""])[0]
             elif line.startswith("| `"):
                 example = line.rstrip(" |").rsplit(" | ", 1)[1].strip("`")
-                yield base, f"{table}.{example}" if table else example
+                yield merged(json.loads(json.dumps(base)), NEEDED.get(table, {})), f"{table}.{example}" if table else example
 
 
 def test_the_schema_is_one():
@@ -46,7 +53,10 @@ def test_shipped_scenes_fit_the_schema(scene):
 def test_examples_of_the_reference_fit_the_schema():
     n = 0
     for base, line in examples():
-        scene = merged(json.loads(json.dumps(base)), tomllib.loads(line))
+        # half of a ramp, which the reference has in a line of its own
+        if re.search(r"\{ (to|over) = [\d.]+ \}", line):
+            continue
+        scene = merged(base, tomllib.loads(line))
         assert not list(VALIDATOR.iter_errors(scene)), line
         n += 1
     assert n > 80
