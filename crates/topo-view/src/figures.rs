@@ -5,6 +5,7 @@ mod elastic_breaking;
 mod elastic_charging;
 mod elastic_configurations;
 mod elastic_discharge;
+mod elastic_work;
 mod figure;
 mod knots_table;
 mod links_table;
@@ -26,11 +27,12 @@ use std::path::Path;
 use std::time::Instant;
 
 /// Every figure, in the order of the gallery.
-pub const ALL: [Figure; 8] = [
+pub const ALL: [Figure; 9] = [
     elastic_configurations::FIGURE,
     elastic_charging::FIGURE,
     elastic_discharge::FIGURE,
     elastic_breaking::FIGURE,
+    elastic_work::FIGURE,
     nematic::charging::FIGURE,
     nematic::discharge::FIGURE,
     knots_table::FIGURE,

@@ -89,7 +89,7 @@ pub fn findings(results: &Path) -> Result<Vec<Finding>, ViewError> {
             Purpose::Choice => tables.choices.extend(Side::read(results, variant)?),
             Purpose::End => tables.last = Side::read(results, variant)?,
             Purpose::Breaking => tables.criteria = ByCriterion::read(results, variant)?,
-            Purpose::Friction => {}
+            Purpose::Friction | Purpose::Work => {}
         }
     }
     let all = elastic::CLAIMS.iter().chain(&nematic::CLAIMS);

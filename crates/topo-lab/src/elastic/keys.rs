@@ -107,7 +107,7 @@ pub(crate) const ROD_KEYS: [SweptKey<ElasticCase>; 14] = [
         ),
     },
     SweptKey {
-        key: "discharge.load.dashpot",
+        key: DASHPOT,
         access: Access::Number(|c| c.load.map(|l| l.dashpot), |c, x| load(c).dashpot = x),
     },
     SweptKey {
@@ -121,6 +121,8 @@ pub(crate) const ROD_KEYS: [SweptKey<ElasticCase>; 14] = [
 
 /// The key of the resolution.
 pub(super) const EDGES: &str = "accuracy.edges";
+/// The key of the resistance of the load.
+pub(super) const DASHPOT: &str = "discharge.load.dashpot";
 
 #[cfg(test)]
 mod tests {

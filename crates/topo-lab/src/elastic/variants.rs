@@ -1,10 +1,12 @@
 //! Scenes beside the published sweep: what its outcome depends on, and the end of a discharge.
 
-use topo_rod::{ContactParameters, FrictionParameters, FrictionRange, Reading};
+use topo_rod::{ContactParameters, EndLoad, FrictionParameters, FrictionRange, Reading};
 
 use super::choices::Cuts;
+use super::keys::DASHPOT;
 use super::scene::ElasticScene;
 use crate::preset::Preset;
+use crate::scene::Axis;
 
 /// What a scene beside the sweep is run for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -17,6 +19,8 @@ pub enum Purpose {
     End,
     /// What the reading of "the point of maximum stress" does to the untwisted knots.
     Breaking,
+    /// What a knot does as a motor: work on a load, power and efficiency.
+    Work,
 }
 
 /// A scene beside the sweep; its tables lie in a folder of their own.
@@ -39,9 +43,33 @@ const RATIOS: [f64; 2] = [0.0, 1.0];
 /// Share of the energy after which the last mode is alone: modes next to it decay at least four times as fast.
 const LAST_SHARE: f64 = 0.99999;
 
+/// Where a discharge against a load ends: the last hundredth of the energy would take most of the time.
+const WORKED_SHARE: f64 = 0.99;
+/// And when, in T_0: the stiffest dashpots of the study take thousands.
+const LONGEST_WORK: f64 = 1e5;
+/// Tolerance of work, in h, or that of the preset if it is finer: at 1e-3 the energy account of an untwisted trefoil on the stiffest
+/// dashpot is open by 4 % and its work 11 % too large.
+const WORK_TOLERANCE: f64 = 3e-4;
+/// Its output times per decade: only sums over the discharge are drawn.
+const WORK_OUTPUTS: f64 = 4.0;
+/// Edges of a rod that works, in a draft.
+const DRAFT_WORK_EDGES: usize = 100;
+
+/// Twists θ'h at which knots work on a load, and the resistances c of its dashpot, in η/h.
+fn work_of(preset: Preset) -> (&'static [f64], &'static [f64]) {
+    match preset {
+        Preset::Draft => (&[-2.0, 0.0, 2.0], &[0.1, 1.0, 10.0]),
+        _ => (
+            &[-2.0, -1.0, 0.0, 1.0, 2.0],
+            &[0.003, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0],
+        ),
+    }
+}
+
 impl ElasticScene {
     /// The scenes run beside this sweep: the untwisted knots under four other choices, and cut where each criterion has its largest;
-    /// all knots at five twists followed to 99.999 %; and beyond draft the untwisted knots, cut once, in a study of friction.
+    /// all knots at five twists followed to 99.999 %, and at three or five against loads; and beyond draft the untwisted knots, cut once,
+    /// in a study of friction.
     pub fn variants(&self) -> Vec<Variant> {
         let mut variants = vec![Variant {
             name: "friction range of the contact diameter".to_owned(),
@@ -61,6 +89,7 @@ impl ElasticScene {
         }
         variants.push(self.last());
         variants.push(self.breaking());
+        variants.push(self.work());
         if self.preset != Preset::Draft {
             variants.extend(self.friction_study());
         }
@@ -144,6 +173,35 @@ impl ElasticScene {
         Variant {
             name: "cut where each criterion is largest".to_owned(),
             purpose: Purpose::Breaking,
+            scene,
+        }
+    }
+
+    /// All knots, cut once, whose tips move against dashpots.
+    fn work(&self) -> Variant {
+        let (twists, dashpots) = work_of(self.preset);
+        let mut scene = Self {
+            folder: "elastic-work".to_owned(),
+            twists: twists.to_vec(),
+            cuts: Cuts::default(),
+            load: Some(EndLoad {
+                dashpot: dashpots[0],
+                ..EndLoad::default()
+            }),
+            axes: vec![Axis::of_numbers(DASHPOT, dashpots)],
+            ..self.clone()
+        };
+        scene.discharge.until_released = WORKED_SHARE;
+        scene.discharge.longest = LONGEST_WORK;
+        scene.discharge.outputs_per_decade = WORK_OUTPUTS;
+        scene.timeline.closures = 0;
+        scene.accuracy.tolerance = scene.accuracy.tolerance.min(WORK_TOLERANCE);
+        if self.preset == Preset::Draft {
+            scene.rod.n_edges = DRAFT_WORK_EDGES;
+        }
+        Variant {
+            name: "work on a dashpot between the tips".to_owned(),
+            purpose: Purpose::Work,
             scene,
         }
     }
@@ -251,6 +309,31 @@ mod tests {
             assert_eq!(breaking[0].cuts, Cuts::Criteria);
             assert_eq!(breaking[0].twists, [0.0]);
             assert_eq!(breaking[0].rod, ElasticScene::published(preset).rod);
+        }
+    }
+
+    #[test]
+    fn every_knot_works_on_every_load() {
+        let table = topo_knots::KnotTable::builtin();
+        for (preset, n_twists, n_loads) in [(Preset::Draft, 3, 3), (Preset::Standard, 5, 8)] {
+            let work = of(preset, Purpose::Work);
+            assert_eq!(work.len(), 1);
+            let cases = work[0].cases(&table).unwrap();
+            assert_eq!(cases.len(), 14 * n_twists * n_loads);
+            // the loads of a state run fastest, each a case of its own name
+            let dashpots: Vec<f64> = cases.iter().map(|c| c.load.unwrap().dashpot).collect();
+            let (first, rest) = dashpots.split_at(n_loads);
+            assert!(first.windows(2).all(|pair| pair[0] < pair[1]));
+            assert!(rest.chunks(n_loads).all(|again| again == first));
+            let mut names: Vec<_> = cases.iter().map(|c| work[0].case_name(c)).collect();
+            names.sort();
+            names.dedup();
+            assert_eq!(names.len(), cases.len());
+            // but for the edges of a draft the fibre is that of the sweep
+            let mut rod = work[0].rod.clone();
+            let published = ElasticScene::published(preset).rod;
+            rod.n_edges = published.n_edges;
+            assert_eq!(rod, published);
         }
     }
 

@@ -61,6 +61,12 @@ pub struct Axis {
 }
 
 impl Axis {
+    /// A key whose values are these numbers, all different.
+    pub(crate) fn of_numbers(key: &'static str, numbers: &[f64]) -> Self {
+        let values = numbers.iter().copied().map(AxisValue::Number).collect();
+        Self { key, values }
+    }
+
     /// The key, with its table.
     pub fn key(&self) -> &'static str {
         self.key

@@ -1,7 +1,7 @@
 //! What "the point of maximum stress" means, and what that does to the discharge of the untwisted knots.
 
 use super::figure::{Context, Drawn, Figure, face};
-use super::series::{KEY_HEIGHT, Table, bounds, line, log_bounds, step};
+use super::series::{KEY_HEIGHT, Table, bounds, column_rules, knot_names, line, log_bounds, step};
 use crate::data::{Cut, Sweep};
 use crate::error::ViewError;
 use crate::plot::canvas::Canvas;
@@ -179,7 +179,7 @@ fn draw(context: &Context) -> Result<Drawn, ViewError> {
     };
     let slow = (0..60).map(dash).collect();
     columns(&b, &relative, "b", (slow, 0.0), (&mut canvas, &mut table));
-    names(&b, &relative, &mut canvas);
+    knot_names(&b, &relative.knots, &mut canvas);
     canvas.footnote(&feet(&sweep, &cut, context));
     Ok(Drawn {
         picture: canvas.finish()?,
@@ -221,12 +221,7 @@ fn columns(
     (more, room): (Vec<Plot>, f64),
     (canvas, table): (&mut Canvas, &mut Table),
 ) {
-    let low = panel.y.range.0;
-    // below what is written into the panel
-    let high = panel.y.value(1.0 - room / panel.size[1]);
-    let rules = 1..times.knots.len();
-    let rule = |k: usize| line(vec![(k as f64, low), (k as f64, high)], "#e6e8eb", 0.6);
-    let mut plots: Vec<Plot> = rules.map(rule).collect();
+    let mut plots = column_rules(panel, times.knots.len(), room);
     for (k, (knot, tied)) in times.knots.iter().zip(&times.ties).enumerate() {
         if let Some([low, high]) = *tied {
             let x = k as f64 + 0.5;
@@ -276,16 +271,6 @@ fn legend(panel: &Panel, times: &Times<'_>, canvas: &mut Canvas) -> Vec<Plot> {
         sample(Box::new(bar), "near-tied energy densities", canvas);
     }
     plots
-}
-
-fn names(panel: &Panel, times: &Times<'_>, canvas: &mut Canvas) {
-    let n = times.knots.len().max(1) as f64;
-    for (k, knot) in times.knots.iter().enumerate() {
-        let x = panel.at[0] + panel.size[0] * (k as f64 + 0.5) / n;
-        let y = panel.at[1] + panel.size[1] + 13.0;
-        let style = Style::default().middle().size(9.5);
-        canvas.text(x, y, &text::knot_name(knot), style);
-    }
 }
 
 /// How far the criteria agree, and which knots are slow by which.

@@ -113,6 +113,25 @@ pub fn line(points: Vec<(f64, f64)>, color: &str, width: f64) -> Plot {
     )
 }
 
+/// Faint lines between the `n` columns of a panel, that leave `room` free at its top.
+pub fn column_rules(panel: &Panel, n: usize, room: f64) -> Vec<Plot> {
+    let low = panel.y.range.0;
+    let high = panel.y.value(1.0 - room / panel.size[1]);
+    let rule = |k: usize| line(vec![(k as f64, low), (k as f64, high)], "#e6e8eb", 0.6);
+    (1..n).map(rule).collect()
+}
+
+/// Names of the knots below the columns of a panel, one each.
+pub fn knot_names(panel: &Panel, knots: &[&str], canvas: &mut Canvas) {
+    let n = knots.len().max(1) as f64;
+    for (k, knot) in knots.iter().enumerate() {
+        let x = panel.at[0] + panel.size[0] * (k as f64 + 0.5) / n;
+        let y = panel.at[1] + panel.size[1] + 13.0;
+        let style = Style::default().middle().size(9.5);
+        canvas.text(x, y, &knot_name(knot), style);
+    }
+}
+
 /// A line through points of the canvas.
 pub fn line_path(canvas: &mut Canvas, points: &[[f64; 2]], color: &str, width: f64) {
     let mut path = String::new();
