@@ -28,7 +28,7 @@ fn results() -> tempfile::TempDir {
     let dir = tempfile::tempdir().unwrap();
     synthetic::results(dir.path(), 2, &[-1.0, 0.0, 1.0]);
     synthetic::nematic(dir.path());
-    for variant in ["elastic-contact-range", "elastic-breaking"] {
+    for variant in ["elastic-contact-range", "elastic-breaking", "elastic-work"] {
         std::fs::remove_dir_all(dir.path().join(variant)).unwrap();
     }
     mark(&dir.path().join("elastic"), &Elastic);
