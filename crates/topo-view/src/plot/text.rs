@@ -148,11 +148,14 @@ pub fn signed(value: f64) -> String {
     }
 }
 
-/// Tick of a logarithmic axis: plain between 0.01 and 1000, a power of ten beyond.
+/// Tick of a logarithmic axis: plain between 0.01 and 1000, beyond a power of ten where it is one.
 pub fn log_tick(value: f64) -> String {
     let exponent = value.log10();
     if (-2.01..3.01).contains(&exponent) {
         return number(value, 2);
+    }
+    if (exponent - exponent.round()).abs() > 1e-6 {
+        return significant(value, 1);
     }
     power_of_ten(exponent.round() as i32)
 }
@@ -198,8 +201,8 @@ mod tests {
         assert_eq!(signed(1.75), "+1.75");
         assert_eq!([fixed(-0.0004, 3), fixed(-1.5, 2)], ["0.000", "−1.50"]);
         assert_eq!(
-            (log_tick(0.1), log_tick(1e-5)),
-            ("0.1".to_owned(), "10⁻⁵".to_owned())
+            [0.1, 1e-5, 0.005, 2e4].map(log_tick),
+            ["0.1", "10⁻⁵", "0.005", "20000"]
         );
     }
 }
