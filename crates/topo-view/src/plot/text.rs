@@ -148,11 +148,14 @@ pub fn signed(value: f64) -> String {
     }
 }
 
-/// Tick of a logarithmic axis: plain between 0.01 and 1000, a power of ten beyond.
+/// Tick of a logarithmic axis: plain between 0.01 and 1000, a power of ten beyond, and a multiple of one between two powers.
 pub fn log_tick(value: f64) -> String {
     let exponent = value.log10();
     if (-2.01..3.01).contains(&exponent) {
         return number(value, 2);
+    }
+    if (exponent - exponent.round()).abs() > 0.01 {
+        return significant(value, 1);
     }
     power_of_ten(exponent.round() as i32)
 }
@@ -201,5 +204,7 @@ mod tests {
             (log_tick(0.1), log_tick(1e-5)),
             ("0.1".to_owned(), "10⁻⁵".to_owned())
         );
+        // between two powers no power alone
+        assert_eq!([0.005, 2e-5].map(log_tick), ["0.005", "2·10⁻⁵"]);
     }
 }
