@@ -22,7 +22,7 @@ pub(super) const FIGURE: Figure = Figure {
               resistance c in η/h. (b) Largest power on the load, in E_0/T_0. (c) The best efficiency of each knot over \
               the loads tried, and (d) its largest power; the table beside the figure has the dashpot of each. \
               E_0 = E_b h² L, T_0 = 2 L η/(h E_b); \
-              discharges are followed until 99 % of the energy is released. A draft has three twists, \
+              discharges are followed until 99 % of the energy is released. A draft has two twists, \
               three loads and half the edges; finer presets five twists and eight loads.",
     claim: "Not in the published work, which discharges knots without a load: what one would be worth as a motor.",
     table: "elastic-work/sweep.csv",
@@ -193,7 +193,7 @@ fn draw(context: &Context) -> Result<Drawn, ViewError> {
 fn feet(sweep: &Sweep, motors: &Motors<'_>, quality: Preset) -> Vec<String> {
     let mut feet = face(sweep, quality);
     let left_out = match quality {
-        Preset::Draft => "; left out in a draft: θ′*h* = ±1, five loads",
+        Preset::Draft => "; left out in a draft: θ′*h* = −2, −1, +1, five loads",
         _ => "",
     };
     feet[0] = format!(
