@@ -54,7 +54,7 @@ fn strands(x: &[topo_core::Vector3<f64>]) -> (f64, f64, usize) {
 /// A clamped rod that is twisted and let in coils up: strands of radius R at the angle α to their axis carry the moment and the force of an ideal
 /// plectoneme.
 #[test]
-#[ignore = "long: minutes"]
+#[ignore = "long: minutes; a twisted, pulled rod up to its plectoneme"]
 fn long_val_plectoneme_carries_moment_and_force() {
     use topo_core::Polyline;
     let (n, length) = (240, 120.0);
@@ -243,7 +243,7 @@ fn law_pulled_knots_jam_and_come_loose_without_crossing() {
 }
 
 #[test]
-#[ignore = "long: minutes"]
+#[ignore = "long: minutes; 200 knots pulled and let go"]
 fn long_law_pulled_knots_jam_and_come_loose_without_crossing() {
     (1..=200).for_each(jam_and_let_go);
 }

@@ -221,7 +221,7 @@ fn add_to_run<S: Simd>(
 #[inline(always)]
 fn combine_run<S: Simd>(
     _simd: S,
-    [on_p, on_out, on_old]: [f64; 3],
+    factors: [f64; 3],
     p: [&[f64]; 5],
     out: [&[f64]; 5],
     mut old: [&mut [f64]; 5],
@@ -229,19 +229,30 @@ fn combine_run<S: Simd>(
     let n = p[0].len();
     let (p, out) = (p.map(|x| &x[..n]), out.map(|x| &x[..n]));
     let mut sums = [0.0; WIDTH];
-    let mut cell = |i: usize, sum: &mut f64| {
-        let new: Tensor5 =
-            std::array::from_fn(|c| on_p * p[c][i] + on_out * out[c][i] + on_old * old[c][i]);
-        (0..5).for_each(|c| old[c][i] = new[c]);
-        *sum += contract(&new, &new);
-    };
     for start in (0..n - n % WIDTH).step_by(WIDTH) {
         for (lane, sum) in sums.iter_mut().enumerate() {
-            cell(start + lane, sum);
+            *sum += combine_at(start + lane, factors, &p, &out, &mut old);
         }
     }
-    (n - n % WIDTH..n).for_each(|i| cell(i, &mut sums[0]));
+    for i in n - n % WIDTH..n {
+        sums[0] += combine_at(i, factors, &p, &out, &mut old);
+    }
     sums.iter().sum()
+}
+
+/// As a closure it would be called from both loops, outside of what is compiled for wide vectors.
+#[inline(always)]
+fn combine_at(
+    i: usize,
+    [on_p, on_out, on_old]: [f64; 3],
+    p: &[&[f64]; 5],
+    out: &[&[f64]; 5],
+    old: &mut [&mut [f64]; 5],
+) -> f64 {
+    let new: Tensor5 =
+        std::array::from_fn(|c| on_p * p[c][i] + on_out * out[c][i] + on_old * old[c][i]);
+    (0..5).for_each(|c| old[c][i] = new[c]);
+    contract(&new, &new)
 }
 
 #[cfg(test)]

@@ -154,10 +154,7 @@ impl ChargedRod {
     /// A site that is not on the rod.
     pub fn cut(&self, site: CutSite) -> Result<CutRod, RodError> {
         match site {
-            CutSite::MaximumEnergyDensity => {
-                let found = self.cut_candidates(0.0)[0];
-                CutRod::new(self, found.component, found.at)
-            }
+            CutSite::MaximumEnergyDensity => self.cut(CutSite::Maximum(Criterion::Energy)),
             CutSite::Maximum(criterion) => {
                 let found = self.cut_candidates_by(criterion, 0.0)[0];
                 CutRod::new(self, found.component, found.at)
