@@ -2,8 +2,11 @@
 
 use crate::outside::Outside;
 use resvg::tiny_skia::{IntRect, Pixmap};
+use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Command, Stdio};
+use std::sync::mpsc;
+use std::time::Duration;
 
 /// A browser with a profile of its own.
 pub struct Browser {
@@ -17,8 +20,11 @@ pub type Size = [u32; 2];
 /// Sends what a page found out, `report` in its script, to the frame around it.
 pub const SEND: &str = "parent.postMessage(JSON.stringify(report), '*');";
 
-/// How often a page is asked for its report.
-const N_TRIES: usize = 3;
+/// How long a page may take to report on a loaded machine.
+const PATIENCE: Duration = Duration::from_secs(180);
+
+/// What stands before a report on the console.
+const REPORT: &str = "REPORT";
 
 impl Browser {
     /// The browser of this machine; panics where there is none.
@@ -31,19 +37,19 @@ impl Browser {
         }
     }
 
-    /// Shows an address in a frame of a size, as windows cannot be narrower than 500 pixels, for `budget` milliseconds of the
-    /// page's clock.
-    fn show(&self, address: &str, [width, height]: Size, budget: u32, more: &[&str]) -> String {
+    /// A browser that shows an address in a frame of a size, as windows cannot be narrower than 500 pixels.
+    fn shows(&self, address: &str, [width, height]: Size) -> Command {
         let frame = self.folder.path().join("frame.html");
         let text = format!(
             "<!DOCTYPE html><style>body{{margin:0}}iframe{{border:0;width:{width}px;height:{height}px;display:block}}</style>\
-             <script>addEventListener('message',(e)=>{{document.title='REPORT'+e.data}})</script>\
+             <script>addEventListener('message',(e)=>console.log('{REPORT}'+e.data))</script>\
              <iframe src=\"{}\"></iframe>",
             address.replace('"', "%22")
         );
         std::fs::write(&frame, text).unwrap();
         let profile = self.folder.path().join("profile");
-        let output = Command::new(&self.program)
+        let mut command = Command::new(&self.program);
+        command
             .args(["--headless", "--no-sandbox", "--disable-dev-shm-usage"])
             .args([
                 "--hide-scrollbars",
@@ -51,45 +57,62 @@ impl Browser {
                 "--use-angle=swiftshader",
             ])
             .arg("--enable-unsafe-swiftshader")
-            .arg(format!("--virtual-time-budget={budget}"))
             .arg(format!("--window-size={},{}", width.max(500), height + 200))
-            .arg(format!("--user-data-dir={}", profile.display()))
-            .args(more)
-            .arg(self::address(&frame))
-            .output()
+            .arg(format!("--user-data-dir={}", profile.display()));
+        command
+    }
+
+    /// What the script of a page sent by [`SEND`]: the browser writes it to its console, and ends then.
+    pub fn report(&self, address: &str, size: Size) -> serde_json::Value {
+        let mut browser = self
+            .shows(address, size)
+            .arg("--enable-logging=stderr")
+            .arg(self.frame())
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped())
+            .spawn()
             .unwrap();
-        String::from_utf8_lossy(&output.stdout).into_owned()
+        let console = BufReader::new(browser.stderr.take().unwrap());
+        let (send, receive) = mpsc::channel();
+        std::thread::spawn(move || {
+            let report = console
+                .lines()
+                .map_while(Result::ok)
+                .find_map(|line| Some(line.split_once(REPORT)?.1.to_owned()));
+            _ = send.send(report);
+        });
+        let text = receive.recv_timeout(PATIENCE);
+        _ = browser.kill();
+        _ = browser.wait();
+        let text = text
+            .ok()
+            .flatten()
+            .unwrap_or_else(|| panic!("no report from {address} in {PATIENCE:?}"));
+        // the console adds where the line comes from
+        serde_json::Deserializer::from_str(&text)
+            .into_iter()
+            .next()
+            .unwrap()
+            .unwrap()
     }
 
-    /// What the script of a page sent by [`SEND`]. On a loaded machine Chromium now and then ends before the page has drawn, so it
-    /// is asked again.
-    pub fn report(&self, address: &str, size: Size, budget: u32) -> serde_json::Value {
-        let ask = |_| {
-            let dom = self.show(address, size, budget, &["--dump-dom"]);
-            let title = dom.split_once("<title>REPORT")?;
-            Some(title.1.split_once("</title>")?.0.to_owned())
-        };
-        let text = (0..N_TRIES)
-            .find_map(ask)
-            .unwrap_or_else(|| panic!("no report from {address}"));
-        serde_json::from_str(
-            &text
-                .replace("&lt;", "<")
-                .replace("&gt;", ">")
-                .replace("&amp;", "&"),
-        )
-        .unwrap()
-    }
-
-    /// The pixels of an address in a frame of a size, `zoom` a CSS pixel.
+    /// The pixels of an address in a frame of a size, `zoom` a CSS pixel, after `budget` milliseconds of the page's clock.
     pub fn screenshot(&self, address: &str, size: Size, zoom: u32, budget: u32) -> Pixmap {
         let file = self.folder.path().join("shot.png");
         let shot = format!("--screenshot={}", file.display());
         let scale = format!("--force-device-scale-factor={zoom}");
-        self.show(address, size, budget, &[&shot, &scale]);
+        self.shows(address, size)
+            .args([shot, scale, format!("--virtual-time-budget={budget}")])
+            .arg(self.frame())
+            .output()
+            .unwrap();
         let all = Pixmap::load_png(&file).unwrap();
         let frame = IntRect::from_xywh(0, 0, size[0] * zoom, size[1] * zoom).unwrap();
         all.clone_rect(frame).unwrap()
+    }
+
+    fn frame(&self) -> String {
+        address(&self.folder.path().join("frame.html"))
     }
 }
 

@@ -54,7 +54,6 @@ fn browser_a_movie_plays_when_asked_and_stops() {
         const box = document.querySelector('.movie'), image = box.querySelector('img'), button = box.querySelector('button');
         const report = {{ steps: [] }};
         const look = async () => {{
-            // the budget of the page is not spent while it loads, as it is while it decodes
             if (!image.complete || !image.naturalWidth) await new Promise(done => image.addEventListener('load', done, {{ once: true }}));
             report.steps.push([image.src.split('/figures/')[1], button.textContent, image.naturalWidth]);
         }};
@@ -68,7 +67,7 @@ fn browser_a_movie_plays_when_asked_and_stops() {
     );
     let file = dir.path().join("probed.html");
     std::fs::write(&file, page.replace("</head>", &probe)).unwrap();
-    let report = Browser::start().report(&address(&file), [800, 600], 20_000);
+    let report = Browser::start().report(&address(&file), [800, 600]);
     let still = serde_json::json!(["preview/movie-elastic.png", "Play", movies::SIZE.width]);
     let plays = serde_json::json!(["movie-elastic.png", "Stop", movies::SIZE.width]);
     let steps = serde_json::json!([still, plays, still, plays]);

@@ -272,10 +272,9 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         let frames = squares();
         let movie = crate::plot::font::base64(&encode(SIZE, 10, &frames).unwrap());
-        // Decodes frame by frame as the page's own pictures are decoded, and says what is where. The page's clock does not wait for
-        // the decoder: a timer at every tick gives it time.
+        // Decodes frame by frame as the page's own pictures are decoded, and says what is where.
         let page = format!(
-            "<!DOCTYPE html><script>setInterval(() => 0, 1); (async () => {{
+            "<!DOCTYPE html><script>(async () => {{
             const bytes = Uint8Array.from(atob('{movie}'), (c) => c.charCodeAt(0)), report = {{ reds: [] }};
             const decoder = new ImageDecoder({{ data: bytes, type: 'image/png' }});
             await decoder.tracks.ready; await decoder.completed;
@@ -297,7 +296,7 @@ mod tests {
         );
         let file = dir.path().join("movie.html");
         std::fs::write(&file, page).unwrap();
-        let report = Browser::start().report(&address(&file), [500, 300], 60_000);
+        let report = Browser::start().report(&address(&file), [500, 300]);
         assert_eq!(report["frames"], frames.len(), "{report}");
         assert_eq!(report["repeats"], "Infinity", "{report}");
         let places = [5, 8, 11, 14, 17, 20, 20];

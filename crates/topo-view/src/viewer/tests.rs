@@ -151,7 +151,7 @@ fn browser_the_viewer_turns_slides_plays_and_chooses() {
     let page = probed(&page(dir.path()), HANDS);
     let browser = Browser::start();
     for size in [[1280, 800], [390, 844]] {
-        let report = browser.report(&address(&page), size, 30_000);
+        let report = browser.report(&address(&page), size);
         assert_eq!(report["problems"], serde_json::json!([]), "{report}");
         assert!(report["wide"].as_i64().unwrap() <= 0, "{size:?}: {report}");
         for (battery, least, link) in [("elastic", 0.01, "#3_1,+1"), ("nematic", 0.05, "#q=1")] {
@@ -205,8 +205,7 @@ fn browser_an_address_names_a_state() {
     let dir = tempfile::tempdir().unwrap();
     let page = probed(&page(dir.path()), ADDRESSED);
     let browser = Browser::start();
-    let report =
-        |hash: &str| browser.report(&format!("{}#{hash}", address(&page)), [390, 844], 9000);
+    let report = |hash: &str| browser.report(&format!("{}#{hash}", address(&page)), [390, 844]);
     let found = report("4_1,-1,3");
     assert!(
         found["state"] == "1,0" && found["frame"] == "3" && found["seen"] == true,
