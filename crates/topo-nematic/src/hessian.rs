@@ -115,12 +115,12 @@ impl<'a> Hessian<'a> {
             }
             for special in kernel.domain.special_of(k) {
                 let cell = special.cell as usize;
-                let new: Tensor5 = std::array::from_fn(|c| {
-                    let to = &mut old[c][cell - first];
-                    *to = on_p * p[c][cell] + on_out * out[c][cell] + on_old * *to;
-                    *to
-                });
-                sum += special.mass * contract(&new, &new);
+                let (p, out) = (p.map(|x| x[cell]), out.map(|x| x[cell]));
+                let mut new = old.each_ref().map(|x| x[cell - first]);
+                sum += special.mass * combine_at(factors, &p, &out, &mut new);
+                for c in 0..5 {
+                    old[c][cell - first] = new[c];
+                }
             }
             [sum, 0.0, 0.0, 0.0]
         });
@@ -218,41 +218,58 @@ fn add_to_run<S: Simd>(
     sum
 }
 
+/// old <- on_p p + on_out out + on_old old in one cell or in several; gives the square of the norm of what results, summed as
+/// [`contract`] does.
+#[inline(always)]
+fn combine_at<T: Field>(
+    [on_p, on_out, on_old]: [f64; 3],
+    p: &[T; 5],
+    out: &[T; 5],
+    old: &mut [T; 5],
+) -> T {
+    for c in 0..5 {
+        old[c] = p[c] * on_p + out[c] * on_out + old[c] * on_old;
+    }
+    let [xx, xy, xz, yy, yz] = *old;
+    (xx * xx + yy * yy + xy * xy + xz * xz + yz * yz) * 2.0 + xx * yy + yy * xx
+}
+
 #[inline(always)]
 fn combine_run<S: Simd>(
-    _simd: S,
+    simd: S,
     factors: [f64; 3],
     p: [&[f64]; 5],
     out: [&[f64]; 5],
-    mut old: [&mut [f64]; 5],
+    old: [&mut [f64]; 5],
 ) -> f64 {
     let n = p[0].len();
-    let (p, out) = (p.map(|x| &x[..n]), out.map(|x| &x[..n]));
-    let mut sums = [0.0; WIDTH];
-    for start in (0..n - n % WIDTH).step_by(WIDTH) {
-        for (lane, sum) in sums.iter_mut().enumerate() {
-            *sum += combine_at(start + lane, factors, &p, &out, &mut old);
+    let whole = n - n % WIDTH;
+    let zero = f64x8::splat(simd, 0.0);
+    let mut sums = zero;
+    for start in (0..whole).step_by(WIDTH) {
+        let (mut along, mut image, mut new) = ([zero; 5], [zero; 5], [zero; 5]);
+        for c in 0..5 {
+            along[c] = f64x8::from_slice(simd, &p[c][start..start + WIDTH]);
+            image[c] = f64x8::from_slice(simd, &out[c][start..start + WIDTH]);
+            new[c] = f64x8::from_slice(simd, &old[c][start..start + WIDTH]);
+        }
+        sums += combine_at(factors, &along, &image, &mut new);
+        for c in 0..5 {
+            new[c].store_slice(&mut old[c][start..start + WIDTH]);
         }
     }
-    for i in n - n % WIDTH..n {
-        sums[0] += combine_at(i, factors, &p, &out, &mut old);
+    let mut sums = sums.to_array();
+    for i in whole..n {
+        let (mut along, mut image, mut new) = ([0.0; 5], [0.0; 5], [0.0; 5]);
+        for c in 0..5 {
+            (along[c], image[c], new[c]) = (p[c][i], out[c][i], old[c][i]);
+        }
+        sums[0] += combine_at(factors, &along, &image, &mut new);
+        for c in 0..5 {
+            old[c][i] = new[c];
+        }
     }
     sums.iter().sum()
-}
-
-/// As a closure it would be called from both loops, outside of what is compiled for wide vectors.
-#[inline(always)]
-fn combine_at(
-    i: usize,
-    [on_p, on_out, on_old]: [f64; 3],
-    p: &[&[f64]; 5],
-    out: &[&[f64]; 5],
-    old: &mut [&mut [f64]; 5],
-) -> f64 {
-    let new: Tensor5 =
-        std::array::from_fn(|c| on_p * p[c][i] + on_out * out[c][i] + on_old * old[c][i]);
-    (0..5).for_each(|c| old[c][i] = new[c]);
-    contract(&new, &new)
 }
 
 #[cfg(test)]

@@ -98,6 +98,8 @@ pub(crate) fn pass<L: Lanes, U: Update<L>>(
     let q3 = &stretch.field[3][..n_cells];
     let q4 = &stretch.field[4][..n_cells];
     let centre = [q0, q1, q2, q3, q4];
+    // Copies of the loop's own: through the reference they are read again at each vector.
+    let (sides, ends) = (stretch.sides, stretch.ends);
     let (zero, one, two) = (
         L::splat(token, L::Scalar::of(0.0)),
         L::splat(token, L::Scalar::of(1.0)),
@@ -127,7 +129,7 @@ pub(crate) fn pass<L: Lanes, U: Update<L>>(
         );
         for component in centre {
             // Not the row at -y: it was the row itself a moment ago.
-            for row in &stretch.sides[1..] {
+            for row in &sides[1..] {
                 prefetch::<_, 512>(component, row + at);
             }
         }
@@ -152,19 +154,19 @@ pub(crate) fn pass<L: Lanes, U: Update<L>>(
             #[inline(always)]
             |c| {
                 let left = if at == 0 {
-                    shifted_in::<L>(token, stretch.ends[0][c], &centre[c][start..])
+                    shifted_in::<L>(token, ends[0][c], &centre[c][start..])
                 } else {
                     L::load(token, &centre[c][start + at - 1..start + at - 1 + L::N])
                 };
                 let right = if at == last {
-                    shifted_out::<L>(token, &centre[c][start + at..], stretch.ends[1][c])
+                    shifted_out::<L>(token, &centre[c][start + at..], ends[1][c])
                 } else {
                     L::load(token, &centre[c][start + at + 1..start + at + 1 + L::N])
                 };
-                let below = load_at::<L>(token, centre[c], stretch.sides[0] + at);
-                let above = load_at::<L>(token, centre[c], stretch.sides[1] + at);
-                let back = load_at::<L>(token, centre[c], stretch.sides[2] + at);
-                let front = load_at::<L>(token, centre[c], stretch.sides[3] + at);
+                let below = load_at::<L>(token, centre[c], sides[0] + at);
+                let above = load_at::<L>(token, centre[c], sides[1] + at);
+                let back = load_at::<L>(token, centre[c], sides[2] + at);
+                let front = load_at::<L>(token, centre[c], sides[3] + at);
                 let sum = (left + right) + (below + above) + (back + front);
                 let bulk = linear.mul_add(q[c], quadratic.mul_add(square[c], field[c]));
                 link.mul_add(sum, bulk)

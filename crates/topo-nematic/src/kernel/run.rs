@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::domain::{Domain, SpecialCell, Wall, face_index};
 use crate::kernel::combine::{Combine, Factors};
 use crate::kernel::second::SecondElastic;
-use crate::kernel::{Coefficients, Stretch, pass};
+use crate::kernel::{Coefficients, Stretch, five, pass};
 use crate::material::Material;
 use crate::real::{Lanes, One, Real, Wide};
 use crate::tensor::{Tensor5, contract};
@@ -366,7 +366,7 @@ impl<T: Real> Kernel<T> {
         let (n, first) = (self.stride, k * nx * ny);
         for special in self.domain.special_of(k) {
             let cell = special.cell as usize;
-            let value = |x: &[T]| -> Tensor5 { std::array::from_fn(|c| x[c * n + cell].into()) };
+            let value = |x: &[T]| -> Tensor5 { five(|c| x[c * n + cell].into()) };
             let here = value(q);
             let mut h = self.special_field(q, special, &here);
             if SUMS {
@@ -404,15 +404,18 @@ impl<T: Real> Kernel<T> {
         let h = self.domain.grid.spacing();
         let link = self.material.elastic_constant / (h * h);
         let bulk = self.material.bulk_field(here);
-        std::array::from_fn(|c| {
-            let row = &q[c * n..(c + 1) * n];
-            let mut flux = special.source[c] - special.sink * here[c];
-            for (w, other) in special.weights.iter().zip(special.neighbours) {
-                let there: f64 = row[other as usize].into();
-                flux += w * (there - here[c]);
-            }
-            (link * flux + special.volume * (bulk[c] + self.field[c])) / special.mass
-        })
+        five(
+            #[inline(always)]
+            |c| {
+                let row = &q[c * n..(c + 1) * n];
+                let mut flux = special.source[c] - special.sink * here[c];
+                for (w, other) in special.weights.iter().zip(special.neighbours) {
+                    let there: f64 = row[other as usize].into();
+                    flux += w * (there - here[c]);
+                }
+                (link * flux + special.volume * (bulk[c] + self.field[c])) / special.mass
+            },
+        )
     }
 
     pub(crate) fn level(&self) -> Level {
