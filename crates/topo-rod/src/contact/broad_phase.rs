@@ -8,11 +8,17 @@ use parry3d_f64::bounding_volume::Aabb;
 use parry3d_f64::math::Vector;
 use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhWorkspace};
 
+/// Up to as many boxes each is held against each: a tree takes longer to build.
+const FEW: usize = 128;
+
+/// Lowest and highest corner.
+type Corners = [Vector3<f64>; 2];
+
 /// Finds pairs of stretches of a curve that may be within a distance of each other.
 #[derive(Default)]
 pub struct BroadPhase {
     workspace: BvhWorkspace,
-    boxes: Vec<Aabb>,
+    boxes: Vec<Corners>,
     pairs: Vec<(u32, u32)>,
 }
 
@@ -48,25 +54,47 @@ impl BroadPhase {
             }
             low.add_scalar_mut(-margin);
             high.add_scalar_mut(margin);
-            self.boxes.push(Aabb::new(
-                Vector::new(low.x, low.y, low.z),
-                Vector::new(high.x, high.y, high.z),
-            ));
+            self.boxes.push([low, high]);
         }
+        if self.boxes.len() <= FEW {
+            for (a, one) in self.boxes.iter().enumerate() {
+                found(a, a);
+                for (b, other) in self.boxes.iter().enumerate().skip(a + 1) {
+                    if overlap(one, other) {
+                        found(a, b);
+                    }
+                }
+            }
+        } else {
+            self.pairs_of_tree();
+            for &(a, b) in &self.pairs {
+                found(a as usize, b as usize);
+            }
+        }
+    }
+
+    /// The pairs whose boxes overlap, and each box with itself, ascending.
+    fn pairs_of_tree(&mut self) {
+        let vector = |v: &Vector3<f64>| Vector::new(v.x, v.y, v.z);
+        let boxes = self
+            .boxes
+            .iter()
+            .map(|[low, high]| Aabb::new(vector(low), vector(high)));
+        let tree = Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes.collect::<Vec<_>>());
         self.pairs.clear();
         self.pairs
             .extend((0..self.boxes.len() as u32).map(|a| (a, a)));
-        let tree = Bvh::from_leaves(BvhBuildStrategy::Binned, &self.boxes);
         let pairs = &mut self.pairs;
         tree.traverse_bvtt_single_tree::<false>(&mut self.workspace, &mut |a, b| {
             pairs.push((a.min(b), a.max(b)))
         });
         // the tree's order is an accident of its shape; sums over pairs must not depend on it
         self.pairs.sort_unstable();
-        for &(a, b) in &self.pairs {
-            found(a as usize, b as usize);
-        }
     }
+}
+
+fn overlap([low, high]: &Corners, [other_low, other_high]: &Corners) -> bool {
+    (0..3).all(|k| low[k] <= other_high[k] && other_low[k] <= high[k])
 }
 
 /// All pairs i < j of edges of a curve, not sharing a vertex, whose distance may be at most `reach` (a superset, ascending).
@@ -104,6 +132,15 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
+        #[test]
+        fn few_boxes_and_a_tree_find_the_same_pairs(seed in proptest::collection::vec((-3.0f64..3.0, -3.0f64..3.0, -3.0f64..3.0), 5..FEW), reach in 0.1f64..3.0) {
+            let v: Vec<_> = seed.iter().map(|p| Vector3::new(p.0, p.1, p.2)).collect();
+            let (mut phase, mut found) = (BroadPhase::default(), Vec::new());
+            phase.for_each_pair(&v, true, 1, reach, |a, b| found.push((a as u32, b as u32)));
+            phase.pairs_of_tree();
+            prop_assert_eq!(found, phase.pairs);
+        }
+
         #[test]
         fn close_pairs_miss_nothing(seed in proptest::collection::vec((-3.0f64..3.0, -3.0f64..3.0, -3.0f64..3.0), 5..60), closed: bool, reach in 0.1f64..3.0) {
             let v: Vec<_> = seed.iter().map(|p| Vector3::new(p.0, p.1, p.2)).collect();
