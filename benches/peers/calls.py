@@ -2,7 +2,7 @@
 
     TOPO_PROGRAM=target/release/topo python benches/peers/calls.py [knots [rounds]]
 
-First, objects: the time of `Rod.charge` and `CutRod.discharge` on the wall against the processor time of the work that they report.
+First, objects: the time of `Rod.charge` and `CutRod.discharge` by the clock against that of the computation inside of them.
 Then the same sweep of `knots` knots (14 unless said) by the program and by `topobatteries.run`, in turns, `rounds` times each (5), with
 tight shapes made before; both compute afresh. To be run on a machine that does nothing else.
 """
@@ -34,13 +34,13 @@ def objects(rounds):
     for _ in range(rounds):
         rod = topo.Rod(start, twist=1.0, friction=0.1)
         wall, charged = seconds(rod.charge)
-        shares["charge"].append((wall, charged.run.cpu_seconds))
+        shares["charge"].append((wall, charged.run.wall_seconds))
         wall, run = seconds(charged.cut().discharge)
-        shares["discharge"].append((wall, run.cpu_seconds))
+        shares["discharge"].append((wall, run.wall_seconds))
     for name, pairs in shares.items():
         wall, work = (median(column) for column in zip(*pairs))
         over = median(100 * (w - c) / c for w, c in pairs)
-        print(f"{name:<10} {wall:8.4f} s on the wall {work:8.4f} s of work: {over:+.2f} %")
+        print(f"{name:<10} {wall:8.4f} s a call, {work:8.4f} s of them the computation: {over:+.2f} %")
 
 
 def sweeps(knots, rounds, folder):

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::sync::mpsc::{RecvTimeoutError, SyncSender, sync_channel};
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
@@ -21,6 +21,13 @@ const STACK: usize = 8 << 20;
 enum Message<W, T> {
     Notice(W),
     End(Result<T, Refusal>),
+}
+
+/// What a computation gives, with the seconds that it took on the wall: what a call takes beyond them is its overhead.
+pub fn timed<T, E>(work: impl FnOnce() -> Result<T, E>) -> Result<(T, f64), E> {
+    let start = Instant::now();
+    let value = work()?;
+    Ok((value, start.elapsed().as_secs_f64()))
 }
 
 /// What work says while it goes on; notices are dropped once nobody listens.

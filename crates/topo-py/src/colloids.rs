@@ -16,7 +16,7 @@ use topo_nematic::{
     Threads,
 };
 
-use crate::attend::{Checkpoint, Leave, Reporter, attend, hooks};
+use crate::attend::{Checkpoint, Leave, Reporter, attend, hooks, timed};
 use crate::refusal::Refusal;
 use crate::rods::{curve, stop};
 use crate::values::settings;
@@ -206,7 +206,7 @@ impl SwitchedColloid {
         settings.flow = flow.then(FlowParameters::default);
         let (interrupt, switched) = (Interrupt::new(), self.0.clone());
         let (token, wants) = (interrupt.clone(), observer.is_some());
-        let work = move |reporter: &Reporter<Notice, (topo_nematic::Discharge, Rings)>| {
+        let work = move |reporter: &Reporter<Notice, ((topo_nematic::Discharge, f64), Rings)>| {
             let mut rings: Rings = Vec::new();
             let mut see = |s: &NematicSample, state: &NematicState, _: Option<&FlowCoupling>| {
                 let line = ring_line(state, settings.ring_threshold);
@@ -217,12 +217,14 @@ impl SwitchedColloid {
             };
             let hooks: RunHooks<'_> = hooks(&token, &checkpoint);
             let mut hooks = hooks.with_samples(&mut see);
-            let run = switched.discharge(&settings, &mut hooks)?;
+            let run = timed(|| switched.discharge(&settings, &mut hooks))?;
             Ok((run, rings))
         };
         let listen = |py: Python<'_>, notice: Notice| notice.say(py, observer.as_ref());
-        let (run, rings) = attend(py, &interrupt, Leave::WhenKept, listen, work)?;
-        discharged(py, &run, &rings)
+        let ((run, wall_seconds), rings) = attend(py, &interrupt, Leave::WhenKept, listen, work)?;
+        let dict = discharged(py, &run, &rings)?;
+        dict.set_item("wall_seconds", wall_seconds)?;
+        Ok(dict)
     }
 }
 

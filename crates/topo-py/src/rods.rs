@@ -9,7 +9,7 @@ use topo_core::{DischargeCurve, Interrupt, StopReason};
 use topo_lab::{ElasticScene, Preset, perturbed};
 use topo_rod::{CutSite, Guards, PhaseReport, RodError, RodSample, RodState, RunHooks, RunRecord};
 
-use crate::attend::{Checkpoint, Leave, Reporter, attend, hooks};
+use crate::attend::{Checkpoint, Leave, Reporter, attend, hooks, timed};
 use crate::curves::{polyline, rows};
 use crate::refusal::Refusal;
 use crate::values::settings;
@@ -96,9 +96,13 @@ impl RodBattery {
         let settings = settings(&self.scene.charge, given)?;
         let battery = self.battery.clone();
         let work = move |hooks: &mut RunHooks<'_>| battery.charge(&settings, hooks);
-        let charged = phase(py, "charge", observer, checkpoint, work)?;
+        let (charged, wall_seconds) = phase(py, "charge", observer, checkpoint, work)?;
         let scene = self.scene.clone();
-        Ok(ChargedRod { charged, scene })
+        Ok(ChargedRod {
+            charged,
+            wall_seconds,
+            scene,
+        })
     }
 }
 
@@ -106,6 +110,8 @@ impl RodBattery {
 #[pyclass(frozen)]
 pub struct ChargedRod {
     charged: topo_rod::ChargedRod,
+    /// What charging it took.
+    wall_seconds: f64,
     scene: ElasticScene,
 }
 
@@ -136,7 +142,9 @@ impl ChargedRod {
     }
 
     fn record<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        record(py, self.charged.record(), self.charged.battery())
+        let dict = record(py, self.charged.record(), self.charged.battery())?;
+        dict.set_item("wall_seconds", self.wall_seconds)?;
+        Ok(dict)
     }
 
     fn cut(&self, at: Option<f64>) -> PyResult<CutRod> {
@@ -178,8 +186,9 @@ impl CutRod {
         let settings = settings(&self.scene.discharge, given)?;
         let cut = self.cut.clone();
         let work = move |hooks: &mut RunHooks<'_>| cut.discharge(&settings, hooks);
-        let run = phase(py, "discharge", observer, checkpoint, work)?;
+        let (run, wall_seconds) = phase(py, "discharge", observer, checkpoint, work)?;
         let dict = record(py, &run.record, self.cut.charged.battery())?;
+        dict.set_item("wall_seconds", wall_seconds)?;
         dict.set_item("at", run.at)?;
         dict.set_item("removed", run.removed)?;
         dict.set_item("start", run.start)?;
@@ -195,21 +204,21 @@ impl CutRod {
     }
 }
 
-/// Runs a phase; an observer sees copies of its samples.
+/// Runs a phase and gives the seconds it took; an observer sees copies of its samples.
 fn phase<T: Send + 'static>(
     py: Python<'_>,
     name: &'static str,
     observer: Option<Bound<'_, PyAny>>,
     checkpoint: Checkpoint,
     work: impl FnOnce(&mut RunHooks<'_>) -> Result<T, RodError> + Send + 'static,
-) -> PyResult<T> {
+) -> PyResult<(T, f64)> {
     let interrupt = Interrupt::new();
     let (token, wants) = (interrupt.clone(), observer.is_some());
     let leave = match checkpoint {
         Some(_) => Leave::WhenKept,
         None => Leave::AtOnce,
     };
-    let work = move |reporter: &Reporter<Box<RodSample>, T>| {
+    let work = move |reporter: &Reporter<Box<RodSample>, (T, f64)>| {
         let mut see = |s: &RodSample| reporter.report(Box::new(s.clone()));
         let hooks: RunHooks<'_> = hooks(&token, &checkpoint);
         let mut hooks = if wants {
@@ -217,7 +226,7 @@ fn phase<T: Send + 'static>(
         } else {
             hooks
         };
-        Ok(work(&mut hooks)?)
+        Ok(timed(|| work(&mut hooks))?)
     };
     let listen = |py: Python<'_>, sample: Box<RodSample>| match &observer {
         Some(to) => to.call1((seen(py, name, &sample)?,)).map(drop),

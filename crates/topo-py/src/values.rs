@@ -63,10 +63,13 @@ fn value_of(value: &Bound<'_, PyAny>, key: &str) -> PyResult<Option<Value>> {
 const ARGUMENTS: [(&str, &str); 2] = [("n_edges", "edges"), ("seeds", "tilts")];
 
 /// `defaults` with what `given` says instead; a key whose value is `None` is taken out.
-pub fn settings<T: Serialize + DeserializeOwned + JsonSchema>(
+pub fn settings<T: Clone + Serialize + DeserializeOwned + JsonSchema>(
     defaults: &T,
     given: &Bound<'_, PyDict>,
 ) -> PyResult<T> {
+    if given.is_empty() {
+        return Ok(defaults.clone());
+    }
     let mut all = Table::try_from(defaults).map_err(|e| PyTypeError::new_err(e.to_string()))?;
     for (key, value) in given {
         if value.is_none() {

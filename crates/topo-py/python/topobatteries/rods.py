@@ -48,6 +48,8 @@ class Run:
     """What the energy account does not close by, relative."""
     cpu_seconds: float
     """What it took of the processor, on the thread that led it, in seconds."""
+    wall_seconds: float
+    """What it took by the clock, in seconds: what the call takes beyond that is the package's."""
 
 
 class _Discharge:
