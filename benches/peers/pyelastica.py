@@ -19,6 +19,7 @@ import topobatteries as topo
 LENGTH = 50.0  # h
 DRAG = 0.02  # 1/time: about twice critical for the slowest mode
 CONTACT = 20.0
+PATIENCE = 240.0  # seconds
 
 
 class Simulator(ea.BaseSystemCollection, ea.Damping, ea.Contact):
@@ -67,7 +68,7 @@ def elastica_discharge(points, contact, steps=10**9):
     stepper, now, n = ea.PositionVerlet(), np.float64(0.0), 0
     start, bend = elastic(rod), rod.compute_bending_energy()
     clock = time.perf_counter()
-    while elastic(rod) > 0.01 * start and n < steps and time.perf_counter() - clock < 120:
+    while elastic(rod) > 0.01 * start and n < steps and time.perf_counter() - clock < PATIENCE:
         for _ in range(200):
             now = stepper.step(simulator, now, np.float64(step))
             n += 1
