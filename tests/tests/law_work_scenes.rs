@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use topo_analysis::SweepRow;
+use topo_analysis::{SweepRow, Warning};
 use topo_knots::KnotTable;
 use topo_lab::{ElasticReport, ElasticScene, SweepSettings, run_sweep};
 use topo_tests::curves;
@@ -140,6 +140,9 @@ fn law_a_scene_pulls_an_open_curve() {
     );
     let row = &run.rows[0];
     assert!(row.name.ends_with("3_1"), "{}", row.name);
+    // it is still tied: closed along the chord between its ends it would not be
+    let retied = |w: &Warning| matches!(w, Warning::Retied { .. });
+    assert!(!row.warnings.iter().any(retied), "{}", row.warnings);
     let charge = columns(folder.path(), row, "charge.csv");
     let [fx, other] = ["grip1_fx", "grip0_fx"].map(|name| column(&charge, name).unwrap());
     let number = |text: &String| text.parse::<f64>().unwrap();

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use topo_core::Vector3;
 use topo_core::{CpuClock, CurveError, Polyline, Progress, StopReason};
-use topo_knots::{KnotError, KnotTable, identify};
+use topo_knots::{KnotError, identify};
 use topo_rod::{ChargedRod, Discharge, Guards, PhaseReport, RodBattery, RodSample, RunHooks};
 
 use super::breaking;
@@ -314,7 +314,7 @@ fn linking(report: &PhaseReport) -> String {
 
 /// The part of a row that all cuts share.
 fn charged_row(inputs: &CaseInputs<'_>, charged: &ChargedRod) -> SweepRow {
-    let CaseInputs { case, table, .. } = *inputs;
+    let case = inputs.case;
     let record = charged.record();
     let report = &record.report;
     let mut row = SweepRow {
@@ -347,7 +347,7 @@ fn charged_row(inputs: &CaseInputs<'_>, charged: &ChargedRod) -> SweepRow {
         row.warnings
             .push("no contact: strands pass through each other");
     }
-    match found(case, charged, table) {
+    match found(inputs, charged) {
         Ok(None) => {}
         Ok(Some(found)) => row.warnings.push(Warning::Retied { found }),
         Err(error) => row
@@ -357,12 +357,9 @@ fn charged_row(inputs: &CaseInputs<'_>, charged: &ChargedRod) -> SweepRow {
     row
 }
 
-/// The type of a charged rod, if it is not that of its case.
-fn found(
-    case: &ElasticCase,
-    charged: &ChargedRod,
-    table: &KnotTable,
-) -> Result<Option<String>, LabError> {
+/// The type of a charged rod, if it is not that of its case; of an open one, that of most of its closures.
+fn found(inputs: &CaseInputs<'_>, charged: &ChargedRod) -> Result<Option<String>, LabError> {
+    let (case, table) = (inputs.case, inputs.table);
     let state = charged.state();
     let Some(tied) = &case.tied else {
         let kind = identify(state.vertices(), table)?;
@@ -373,6 +370,14 @@ fn found(
         source,
     };
     let curves = state.centrelines().map_err(refuse)?;
+    if let [only] = &curves[..]
+        && !only.is_closed()
+    {
+        let n_closures = inputs.scene.timeline.closures;
+        return Ok(tied
+            .entry
+            .open_mismatch(only, n_closures, case.seed, table)?);
+    }
     match tied.entry.verify(&curves) {
         Ok(()) => Ok(None),
         Err(KnotError::Mismatch { .. }) => Ok(Some(label(&curves, table)?)),

@@ -6,7 +6,7 @@ use serde::{Serialize, Serializer};
 use topo_core::Polyline;
 use topo_knots::{
     Chirality, KnotEntry, KnotError, KnotTable, LinkEntry, LinkTable, TightKnot, TightLink, V,
-    identify, identify_link,
+    identify, identify_link, identify_open,
 };
 
 use super::case::ElasticCase;
@@ -85,6 +85,28 @@ impl Entry {
             }),
             (Self::Link(link), curves) => link.verify(curves).map(drop),
         }
+    }
+
+    /// The type that most of `n_closures` of an open curve have, where it is another; none is sought without closures.
+    pub(super) fn open_mismatch(
+        &self,
+        curve: &Polyline,
+        n_closures: usize,
+        seed: u64,
+        table: &KnotTable,
+    ) -> Result<Option<String>, KnotError> {
+        let Self::Knot(knot) = self else {
+            return Ok(None);
+        };
+        if n_closures == 0 {
+            return Ok(None);
+        }
+        let found = identify_open(curve.vertices(), n_closures, seed, table)?;
+        let fits = found
+            .types
+            .first()
+            .is_some_and(|most| most.fits(&knot.name));
+        Ok((!fits).then(|| found.dominant().to_owned()))
     }
 }
 
