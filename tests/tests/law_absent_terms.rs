@@ -115,6 +115,8 @@ fn law_absent_terms_of_a_rod_cost_nothing() {
         let bytes = [work.contact_bytes, work.friction_bytes, work.twist_bytes];
         assert_eq!(bytes, [0; 3]);
         assert_eq!((work.n_load_evaluations, work.load_bytes), (0, 0));
+        assert_eq!((work.n_rest_evaluations, work.rest_bytes), (0, 0));
+        assert_eq!((work.n_component_solves, work.component_bytes), (0, 0));
     }
     // Each counter tells a term that is there.
     let everything = RodParameters {
@@ -152,6 +154,32 @@ fn law_absent_terms_of_a_nematic_cost_nothing() {
     assert!(full.bytes.second > 0 && full.n_second_passes > 10);
     // The rest takes what it took.
     assert_eq!(full.bytes.geometry, plain.bytes.geometry);
+}
+
+/// A natural shape is held and used where there is one, at one that is straight too, which changes nothing to rounding.
+#[test]
+fn law_a_natural_shape_is_there_where_it_is_named() {
+    let (parameters, accuracy) = (rod(), Accuracy::default());
+    let battery = RodBattery::new(&parameters, &accuracy, Guards::default(), &circle()).unwrap();
+    let none = &mut topo_core::RunHooks::default();
+    let mut charged = |battery: &RodBattery| {
+        let charged = battery.charge(&ChargeSettings::default(), none).unwrap();
+        charged.record().report.clone()
+    };
+    let absent = charged(&battery);
+    let straight = charged(&battery.with_rest(|_, _| [0.0; 2], |_, _| 0.0).unwrap());
+    assert_eq!(
+        (
+            absent.own.work.n_rest_evaluations,
+            absent.own.work.rest_bytes
+        ),
+        (0, 0)
+    );
+    // two curvatures and a twist of each vertex, and a director
+    assert_eq!(straight.own.work.rest_bytes, 8 * (3 * 60 + 3));
+    let work = straight.own.work;
+    assert!(work.n_rest_evaluations as u64 == work.n_evaluations && work.n_evaluations > 10);
+    assert_eq!(absent.n_steps, straight.n_steps);
 }
 
 /// A load is evaluated where there is one; one too weak to move anything leaves what the rod does, to rounding.

@@ -433,6 +433,7 @@ fn discharge_row(base: &SweepRow, run: &CutResults, cpu_seconds: f64) -> SweepRo
 mod tests {
     use super::*;
     use crate::{ElasticScene, Preset};
+    use topo_knots::KnotTable;
     use topo_knots::{TightenSettings, tighten_entry};
     use topo_rod::energy::RodParts;
     use topo_rod::{Breaking, Criterion};

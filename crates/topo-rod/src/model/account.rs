@@ -56,6 +56,12 @@ pub struct WorkAccount {
     /// Bytes held for a load.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub load_bytes: usize,
+    /// Evaluations with a natural shape.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub n_rest_evaluations: usize,
+    /// Bytes held for a natural shape.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub rest_bytes: usize,
 }
 
 fn is_zero(n: &usize) -> bool {
@@ -72,6 +78,7 @@ impl WorkAccount {
             self.matrix_bytes,
             self.component_bytes,
             self.load_bytes,
+            self.rest_bytes,
         ];
         bytes.iter().sum::<usize>() as u64
     }
@@ -162,6 +169,11 @@ impl RodModel {
             },
             load_bytes: self.load.as_ref().map_or(0, |load| size_of_val(&**load))
                 + self.centreline.load().map_or(0, LoadCorrection::n_bytes),
+            n_rest_evaluations: match self.n_rest_bytes {
+                0 => 0,
+                _ => self.n_evaluations as usize,
+            },
+            rest_bytes: self.n_rest_bytes,
             n_component_solves: (per_factor * solves) as usize,
             matrix_bytes: 8 * (self.centreline.n_nonzeros() + self.newton.n_nonzeros()),
         }

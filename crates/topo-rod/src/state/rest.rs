@@ -132,6 +132,16 @@ impl RodState {
         Ok(straight.with_shape(RestShape { curvature, twist }))
     }
 
+    /// Bytes held for a natural shape.
+    pub(crate) fn n_rest_bytes(&self) -> usize {
+        self.joined.material.as_deref().map_or(0, |material| {
+            let shape = &material.shape;
+            size_of_val(&shape.curvature[..])
+                + size_of_val(&shape.twist[..])
+                + size_of_val(&material.directors[..])
+        })
+    }
+
     /// The natural shape, if it is not straight and untwisted.
     pub fn rest(&self) -> Option<&RestShape> {
         self.joined
