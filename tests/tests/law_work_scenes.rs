@@ -140,7 +140,7 @@ fn law_a_scene_pulls_an_open_curve() {
     );
     let row = &run.rows[0];
     assert!(row.name.ends_with("3_1"), "{}", row.name);
-    // it is still tied: closed along the chord between its ends it would not be
+    // it is still tied, by most of its closures
     let retied = |w: &Warning| matches!(w, Warning::Retied { .. });
     assert!(!row.warnings.iter().any(retied), "{}", row.warnings);
     let charge = columns(folder.path(), row, "charge.csv");
