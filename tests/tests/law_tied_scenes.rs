@@ -23,6 +23,23 @@ fn run_json(report: &ElasticReport, folder: &Path) -> serde_json::Value {
     serde_json::from_str(&std::fs::read_to_string(case.join("run.json")).unwrap()).unwrap()
 }
 
+/// Of a ring cut in a link the sweep says when it is free, if it becomes so: it slips off the other ring when cut where they touch, and stays threaded
+/// through it when cut elsewhere.
+#[test]
+fn law_a_cut_ring_has_a_time_of_untying() {
+    let folder = tempfile::tempdir().unwrap();
+    let more = "[charge]\nduration = 0.3\n[discharge]\nlongest = 10.0\ncuts = [0.0, 0.25]\n[accuracy]\nedges = 64\n";
+    let report = sweep("link = \"hopf\"", more, folder.path());
+    assert!(report.failed.is_empty(), "{:?}", report.failed);
+    let run = run_json(&report, folder.path());
+    let types = |k: usize| run["cuts"][k]["knot_sequence"].clone();
+    println!("{} {:?}", types(0), report.rows[0].t_untie);
+    assert_eq!(types(0), serde_json::json!(["L2a1", "0_1+0_1"]));
+    assert_eq!(types(1), serde_json::json!(["L2a1"]));
+    assert!(report.rows[0].t_untie.is_some_and(|t| t < 5.0));
+    assert!(report.rows[1].t_untie.is_none());
+}
+
 /// Two linked rings: one is cut, and until then each has its Tw + Wr and both their linking number; the energy account closes in the
 /// charge and in the discharge.
 #[test]

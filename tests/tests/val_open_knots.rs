@@ -1,6 +1,8 @@
 //! The knot type of a cut rod while it discharges.
 
-use topo_knots::{KnotTable, TightenSettings, V, identify_open, tighten_entry};
+use topo_knots::{
+    KnotTable, LinkTable, TightenSettings, V, identify_open, identify_open_link, tighten_entry,
+};
 use topo_rod::{Accuracy, Guards, RodBattery, RodParameters};
 use topo_tests::run::discharge;
 
@@ -85,4 +87,39 @@ fn long_discharges_begin_with_the_closed_type() {
     let table = KnotTable::builtin();
     let names: Vec<&str> = table.primes_up_to(7).map(|k| k.name.as_str()).collect();
     check_discharges(&names, 200);
+}
+
+/// A straight rod along the axis of a ring, from −a to a, closed far away in the direction d: the ring lies around the rod, and once more, the other way
+/// round, around the way from one of its ends where that passes within the ring, which is where tan θ < R/a. So it is linked for the share
+/// a/√(a² + R²) of all directions.
+#[test]
+fn val_share_of_the_closures_of_a_rod_that_link_its_ring() {
+    let n_closures = 1000;
+    let ring: Vec<V> = (0..60)
+        .map(|k| {
+            let (sin, cos) = (std::f64::consts::TAU * f64::from(k) / 60.0).sin_cos();
+            V::new(cos, sin, 0.0)
+        })
+        .collect();
+    for a in [0.25, 1.0, 3.0] {
+        let rod = [V::new(0.01, 0.02, -a), V::new(0.01, 0.02, a)];
+        let rod: Vec<V> = (0..=8)
+            .map(|k| rod[0].lerp(&rod[1], f64::from(k) / 8.0))
+            .collect();
+        let link = [&ring[..], &rod[..]];
+        let found =
+            identify_open_link(&link, 1, n_closures, 1, LinkTable::builtin()).expect("a link");
+        let linked = found.iter().filter(|(kind, _)| !kind.is_free(1));
+        let linked: f64 = linked.map(|(_, share)| share).sum();
+        let share = a / a.hypot(1.0);
+        println!("a/R = {a}: {linked:.4} of closures linked, {share:.4} expected");
+        assert!((linked - share).abs() < 0.02);
+        let labels: Vec<String> = found.iter().map(|(kind, _)| kind.label()).collect();
+        assert!(
+            labels.iter().all(|l| l == "L2a1" || l == "0_1+0_1"),
+            "{labels:?}"
+        );
+    }
+    let refused = |n, open| identify_open_link(&[&ring, &ring], open, n, 0, LinkTable::builtin());
+    assert!(refused(0, 1).is_err() && refused(4, 2).is_err());
 }

@@ -1,12 +1,12 @@
-//! Knot types of a cut rod over time, and when it is untied.
+//! Knot types of a cut rod over time, alone or among closed ones, and when it is untied.
 
 use serde::{Deserialize, Serialize};
 use topo_core::Vector3;
-use topo_knots::{KnotTable, identify_open};
+use topo_knots::{KnotTable, LinkTable, identify_open, identify_open_link};
 
 use crate::AnalysisError;
 
-/// Knot type of an open curve at one time.
+/// Type of an open curve, or of a link with an open component, at one time.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TypedSample {
     /// Index of the sample that was typed.
@@ -17,6 +17,8 @@ pub struct TypedSample {
     pub knot: String,
     /// Share of the closures with that type, of either hand.
     pub probability: f64,
+    /// Whether by that type the open curve is an unknot, linked with nothing.
+    pub is_free: bool,
 }
 
 /// The sequence of knot types of a discharge.
@@ -49,28 +51,67 @@ impl Timeline {
     ///
     /// # Errors
     /// A curve that runs through itself or is not finite.
+    ///
+    /// # Validation
+    /// `law_a_cut_component_slips_out_of_its_link`, `law_a_cut_ring_has_a_time_of_untying`
     pub fn of(
         samples: &[(f64, &[Vector3<f64>])],
         table: &KnotTable,
         settings: TimelineSettings,
         seed: u64,
     ) -> Result<Self, AnalysisError> {
-        if settings.closures == 0 || samples.is_empty() {
+        let times: Vec<f64> = samples.iter().map(|(time, _)| *time).collect();
+        Self::by(&times, settings, |k| {
+            let found = identify_open(samples[k].1, settings.closures, seed, table)?;
+            let (knot, probability) = most_frequent(found.distribution, table);
+            let is_free = knot == UNKNOT;
+            Ok((knot, probability, is_free))
+        })
+    }
+
+    /// The types of links whose component number `open` is open and all others are closed.
+    ///
+    /// # Errors
+    /// As [`of`](Self::of), and components that touch.
+    pub fn of_links(
+        samples: &[(f64, Vec<&[Vector3<f64>]>)],
+        open: usize,
+        table: &LinkTable,
+        settings: TimelineSettings,
+        seed: u64,
+    ) -> Result<Self, AnalysisError> {
+        let times: Vec<f64> = samples.iter().map(|(time, _)| *time).collect();
+        Self::by(&times, settings, |k| {
+            let components = &samples[k].1;
+            let found = identify_open_link(components, open, settings.closures, seed, table)?;
+            let most = found.first();
+            Ok(most.map_or_else(Default::default, |(kind, share)| {
+                (kind.label(), *share, kind.is_free(open))
+            }))
+        })
+    }
+
+    /// Looks at samples by number: what is found is a type, its share of the closures, and whether the open curve is free.
+    fn by(
+        times: &[f64],
+        settings: TimelineSettings,
+        find: impl Fn(usize) -> Result<(String, f64, bool), AnalysisError>,
+    ) -> Result<Self, AnalysisError> {
+        if settings.closures == 0 || times.is_empty() {
             return Ok(Self::default());
         }
-        let mut typed: Vec<Option<TypedSample>> = vec![None; samples.len()];
+        let mut typed: Vec<Option<TypedSample>> = vec![None; times.len()];
         let look = |k: usize| -> Result<Option<TypedSample>, AnalysisError> {
-            let (time, vertices) = samples[k];
-            let found = identify_open(vertices, settings.closures, seed, table)?;
-            let (knot, probability) = most_frequent(found.distribution, table);
+            let (knot, probability, is_free) = find(k)?;
             Ok(Some(TypedSample {
                 sample: k,
-                time,
+                time: times[k],
                 knot,
                 probability,
+                is_free,
             }))
         };
-        let last = samples.len() - 1;
+        let last = times.len() - 1;
         let looks: Vec<usize> = (0..last)
             .step_by(settings.stride.max(1))
             .chain([last])
@@ -123,9 +164,9 @@ impl Timeline {
         names
     }
 
-    /// Time of the last change to the unknot, the middle between the two samples around it; `None` if it was not seen.
+    /// Time of the last change to an open curve that is free, the middle between the two samples around it; `None` if it was not seen.
     pub fn untying_time(&self) -> Option<f64> {
-        let knotted = self.samples.iter().rposition(|s| s.knot != UNKNOT)?;
+        let knotted = self.samples.iter().rposition(|s| !s.is_free)?;
         let untied = self.samples.get(knotted + 1)?;
         Some(0.5 * (self.samples[knotted].time + untied.time))
     }
@@ -177,6 +218,7 @@ mod tests {
             time: k as f64,
             knot: (*n).to_owned(),
             probability: 1.0,
+            is_free: *n == UNKNOT,
         };
         Timeline {
             samples: names.iter().enumerate().map(typed).collect(),

@@ -14,6 +14,7 @@ use known::{Found, candidates};
 use kind::LEAST_TRIVIAL_ALEXANDER;
 
 pub use kind::{Handedness, KnotType};
+pub(crate) use open::far_points;
 pub use open::{OpenKnotType, identify_open};
 
 /// Directions tried for a projection with few crossings; a reduced polygon has few anyway.

@@ -41,6 +41,7 @@ pub use invariant::{
 };
 pub use link::{
     LinkEntry, LinkInvariants, LinkJones, LinkPart, LinkTable, LinkType, identify_link,
+    identify_open_link,
 };
 pub use moebius::relax_moebius;
 pub use name::{Factor, KnotName, mirror_name};

@@ -98,14 +98,10 @@ struct LowCell {
     sectors: std::ops::RangeInclusive<i64>,
 }
 
-/// Calls `f` with each fluid cell whose order is below `threshold`.
-fn for_each_low(
-    state: &NematicState,
-    particle: &Particle,
-    threshold: f64,
-    mut f: impl FnMut(LowCell),
-) {
+/// The fluid cells whose order is below `threshold`.
+fn low_cells(state: &NematicState, particle: &Particle, threshold: f64) -> Vec<LowCell> {
     let grid = state.grid();
+    let mut low = Vec::new();
     let [nx, ny, nz] = grid.cells();
     for k in 0..nz {
         for j in 0..ny {
@@ -124,7 +120,7 @@ fn for_each_low(
                 let reach = d[0].hypot(d[1]).max(grid.spacing());
                 let half = 0.6 * grid.spacing() / reach * N_SECTORS as f64 / std::f64::consts::TAU;
                 let at = angle / std::f64::consts::TAU * N_SECTORS as f64;
-                f(LowCell {
+                low.push(LowCell {
                     place: [reach, d[2]],
                     weight: threshold - order,
                     sectors: (at - half).floor() as i64..=(at + half).floor() as i64,
@@ -132,6 +128,7 @@ fn for_each_low(
             }
         }
     }
+    low
 }
 
 fn wrapped(sector: i64) -> usize {
@@ -141,41 +138,37 @@ fn wrapped(sector: i64) -> usize {
 /// Distance from the axis and height of the ring in each sector; none where what is low in order is no ring of the particle.
 fn sectors(state: &NematicState, threshold: f64) -> Option<Vec<[f64; 2]>> {
     let particle = state.particle()?;
+    let low = low_cells(state, particle, threshold);
     let mut sums = vec![[0.0_f64; 3]; N_SECTORS];
-    for_each_low(state, particle, threshold, |cell| {
-        for s in cell.sectors {
+    for cell in &low {
+        for s in cell.sectors.clone() {
             let sum = &mut sums[wrapped(s)];
             sum[0] += cell.weight;
             sum[1] += cell.weight * cell.place[0];
             sum[2] += cell.weight * cell.place[1];
         }
-    });
+    }
     let mean = |s: &[f64; 3]| (s[0] > 0.0).then(|| [s[1] / s[0], s[2] / s[0]]);
     let centres: Vec<[f64; 2]> = sums.iter().map(mean).collect::<Option<_>>()?;
-    is_ring(state, particle, threshold, &centres).then_some(centres)
+    is_ring(state, &low, &centres).then_some(centres)
 }
 
 /// Whether the centres are those of a ring: near the particle, each with cells of low order around it (the middle of two caps has
 /// none), and with none close to the axis (a cap covers it).
 ///
 /// A quarter of the sectors may fail, where a strongly buckled ring overhangs.
-fn is_ring(
-    state: &NematicState,
-    particle: &Particle,
-    threshold: f64,
-    centres: &[[f64; 2]],
-) -> bool {
+fn is_ring(state: &NematicState, low: &[LowCell], centres: &[[f64; 2]]) -> bool {
     let mut nearest = vec![f64::INFINITY; N_SECTORS];
     let mut innermost = vec![f64::INFINITY; N_SECTORS];
-    for_each_low(state, particle, threshold, |cell| {
-        for s in cell.sectors {
+    for cell in low {
+        for s in cell.sectors.clone() {
             let s = wrapped(s);
             let [radius, height] = cell.place;
             let distance = (radius - centres[s][0]).hypot(height - centres[s][1]);
             nearest[s] = nearest[s].min(distance);
             innermost[s] = innermost[s].min(radius);
         }
-    });
+    }
     let spacing = state.grid().spacing();
     let holds = |s: &usize| {
         nearest[*s] < 1.5 * spacing

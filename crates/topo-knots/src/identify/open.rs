@@ -123,7 +123,7 @@ fn close(
     classify(reducer, table, Care::Name)
 }
 
-pub(super) fn far_points(vertices: &[V], n: usize, seed: u64) -> Vec<V> {
+pub(crate) fn far_points(vertices: &[V], n: usize, seed: u64) -> Vec<V> {
     let centre = vertices.iter().sum::<V>() / vertices.len() as f64;
     let radius = vertices
         .iter()

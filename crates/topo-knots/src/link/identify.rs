@@ -68,6 +68,12 @@ impl LinkType {
         }
     }
 
+    /// Whether component `k` is an unknot that can be moved away from the others.
+    pub fn is_free(&self, k: usize) -> bool {
+        let alone = |part: &LinkPart| part.components == [k] && part.candidates == ["0_1"];
+        self.parts.iter().any(alone)
+    }
+
     /// Whether every part has one name that is proved: its diagram has so few crossings that all links it could be were compared.
     pub fn is_certain(&self) -> bool {
         self.parts.iter().all(|part| part.certain)

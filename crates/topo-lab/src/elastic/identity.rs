@@ -21,6 +21,9 @@ pub(crate) fn fingerprint(scene: &ElasticScene, case: &ElasticCase, entry: &Entr
     if starts_from_two_images(scene, case, entry) {
         all["images"] = 2.into();
     }
+    if case.n_components() > 1 {
+        all["typed_links"] = true.into();
+    }
     if let Some(pull) = &scene.pull {
         all["pull"] = json!(pull);
     }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use topo_core::Vector3;
 use topo_core::{CpuClock, CurveError, Polyline, Progress, StopReason};
-use topo_knots::{KnotError, identify};
+use topo_knots::{KnotError, LinkTable, identify};
 use topo_rod::{ChargedRod, Discharge, Guards, PhaseReport, RodBattery, RodSample, RunHooks};
 
 use super::breaking;
@@ -263,9 +263,13 @@ fn failure(charged: &ChargedRod, runs: &[CutResults]) -> Option<String> {
 /// Knot types of a discharge. Those of a mirror image are found on the image of its shapes, which is that of the knot itself: a
 /// type is that of closures in some directions, and these would be others.
 fn timeline(inputs: &CaseInputs<'_>, discharge: &Discharge) -> Result<Timeline, LabError> {
+    let (scene, seed) = (inputs.scene, inputs.case.seed);
+    let samples = &discharge.record.samples;
     if inputs.case.n_components() > 1 {
-        // the type of an open rod among closed ones is not defined by closures of it alone
-        return Ok(Timeline::default());
+        let timed: Vec<_> = samples.iter().map(|s| (s.time, parts(s))).collect();
+        let (open, table) = (discharge.component, LinkTable::builtin());
+        let timeline = Timeline::of_links(&timed, open, table, scene.timeline, seed)?;
+        return Ok(timeline);
     }
     let is_mirror_image = inputs.case.entry(inputs.table)?.is_mirror_image();
     let seen = |s: &RodSample| -> Vec<Vector3<f64>> {
@@ -273,16 +277,20 @@ fn timeline(inputs: &CaseInputs<'_>, discharge: &Discharge) -> Result<Timeline, 
         let vertices = s.state.vertices().iter();
         vertices.map(|x| [x.x, x.y, side * x.z].into()).collect()
     };
-    let samples = &discharge.record.samples;
     let curves: Vec<_> = samples.iter().map(seen).collect();
     let timed: Vec<_> = samples.iter().zip(&curves).collect();
     let timed: Vec<_> = timed.iter().map(|(s, x)| (s.time, x.as_slice())).collect();
-    let scene = inputs.scene;
-    let timeline = Timeline::of(&timed, inputs.table, scene.timeline, inputs.case.seed)?;
+    let timeline = Timeline::of(&timed, inputs.table, scene.timeline, seed)?;
     Ok(match is_mirror_image {
         true => timeline.mirrored(inputs.table),
         false => timeline,
     })
+}
+
+/// Vertices of each component.
+fn parts(s: &RodSample) -> Vec<&[Vector3<f64>]> {
+    let chains = s.state.components().iter();
+    chains.map(|c| &s.state.vertices()[c.vertices()]).collect()
 }
 
 fn phase_warnings(phase: &str, report: &PhaseReport, warnings: &mut Warnings) {

@@ -96,6 +96,11 @@ struct SiRow {
     t95_seconds: Option<f64>,
     t99_seconds: Option<f64>,
     t_untie_seconds: Option<f64>,
+    energy_in_joules: Option<f64>,
+    work_joules: Option<f64>,
+    work_joules_per_kilogram: Option<f64>,
+    heat_joules: Option<f64>,
+    peak_power_watts: Option<f64>,
 }
 
 impl SiRow {
@@ -111,19 +116,25 @@ impl SiRow {
             return named;
         };
         let seconds = |t: Option<f64>| t.map(|t| t * scale.time);
-        let joules = row.energy * scale.energy;
+        let joules = |e: Option<f64>| e.map(|e| e * scale.energy);
+        let per_kilogram = |e: Option<f64>| Some(joules(e)? / scale.mass?);
         Self {
             length_metres: Some(scale.length),
             mass_kilograms: scale.mass,
             t0_seconds: Some(scale.time),
             e0_joules: Some(scale.energy),
-            energy_joules: Some(joules),
-            energy_joules_per_kilogram: scale.mass.map(|mass| joules / mass),
+            energy_joules: joules(Some(row.energy)),
+            energy_joules_per_kilogram: per_kilogram(Some(row.energy)),
             t50_seconds: seconds(row.t50),
             t90_seconds: seconds(row.t90),
             t95_seconds: seconds(row.t95),
             t99_seconds: seconds(row.t99),
             t_untie_seconds: seconds(row.t_untie),
+            energy_in_joules: joules(row.energy_in),
+            work_joules: joules(row.work),
+            work_joules_per_kilogram: per_kilogram(row.work),
+            heat_joules: joules(row.heat),
+            peak_power_watts: joules(row.peak_power).map(|e| e / scale.time),
             ..named
         }
     }
@@ -157,6 +168,8 @@ mod tests {
             energy: 0.2,
             t50: Some(2.0),
             t99: Some(19.5),
+            work: Some(0.04),
+            peak_power: Some(0.3),
             ..SweepRow::default()
         };
         let found = SiRow::of(&si, &row);
@@ -174,6 +187,11 @@ mod tests {
         let mass = 1100.0 * std::f64::consts::PI * 1e-6 * 0.05;
         is(found.mass_kilograms, mass);
         is(found.energy_joules_per_kilogram, 0.1 / mass);
+        is(found.work_joules, 0.02);
+        is(found.work_joules_per_kilogram, 0.02 / mass);
+        // E_0/T_0 is 5 W
+        is(found.peak_power_watts, 1.5);
+        assert_eq!(found.heat_joules, None);
         // of an earlier program, a knot of its own length: nothing rather than a guess
         let unknown = SweepRow {
             length: None,

@@ -204,7 +204,7 @@ fn value_rows(
     for kind in kinds.iter().filter(is_form) {
         for (form, node) in properties(kind) {
             let name = format!("{name}.{form}");
-            let inside = |value: String| whole(format!("{{ {form} = {value} }}"));
+            let inside = |value: String| whole(sample_with(kind, form, &value));
             let first = rows.len();
             if !is(node, "object") {
                 value_rows([table, &name], node, false, &inside, rows);
