@@ -316,3 +316,31 @@ fn law_what_is_released_is_work_and_heat() {
         assert!((after - rest - heat - work).abs() < 1e-3 * done.start.max(after));
     }
 }
+
+/// An end that is drawn away from the other against a dashpot between the two does the work c v² t on it, whichever end it is, besides that on the rod.
+#[test]
+fn val_a_drawn_end_works_on_a_dashpot() {
+    let (speed, time, dashpot) = (0.4, 3.0, 0.7);
+    for end in [0, 1] {
+        let along = if end == 0 { -speed } else { speed };
+        let mut ends = Ends {
+            conditions: [EndCondition::Pinned; 2],
+            ..Ends::default()
+        };
+        ends.motions[end].velocity = [along, 0.0, 0.0];
+        let state = rod(&from_tangents(50, 1.0, |_| Vector3::x()), 0.0);
+        let load = EndLoad {
+            dashpot,
+            ..EndLoad::default()
+        };
+        let setup = Setup::bare(1e-5).with_ends(ends);
+        let model = setup.model(&state).with_load(load, 0, &state).unwrap();
+        let mut simulation = setup.simulation_of(model, state);
+        run_to(&mut simulation, time);
+        let books = simulation.model().account();
+        let expected = dashpot * speed * speed * time;
+        println!("end {end}: {:.6} of {expected:.6}", taken_up(books));
+        assert!((taken_up(books) / expected - 1.0).abs() < 1e-6);
+        assert!(books.work() > expected && books.relative_residual() < 1e-3);
+    }
+}
