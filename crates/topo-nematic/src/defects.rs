@@ -153,16 +153,16 @@ impl<'a> Tracer<'a> {
     /// The cell `steps` away along `axis`; none beyond a wall.
     fn step(&self, cell: usize, axis: usize, steps: isize) -> Option<usize> {
         let [nx, ny, _] = self.grid.cells();
-        let mut ijk = [cell % nx, cell / nx % ny, cell / (nx * ny)];
-        let n = self.grid.cells()[axis] as isize;
-        let to = ijk[axis] as isize + steps;
+        let (stride, n) = ([1, nx, nx * ny][axis], self.grid.cells()[axis]);
+        let at = (cell / stride % n) as isize;
+        let to = at + steps;
+        let inside = (0..n as isize).contains(&to);
         let to = match self.grid.faces()[axis] {
-            Faces::Periodic => to.rem_euclid(n),
-            Faces::Wall if (0..n).contains(&to) => to,
+            _ if inside => to,
+            Faces::Periodic => to.rem_euclid(n as isize),
             Faces::Wall => return None,
         };
-        ijk[axis] = to as usize;
-        Some(self.grid.index(ijk))
+        Some(cell.wrapping_add_signed((to - at) * stride as isize))
     }
 
     /// The four cells around a square, if all are fluid.
@@ -177,7 +177,7 @@ impl<'a> Tracer<'a> {
         let mut squares = Vec::new();
         for cell in 0..self.grid.n_cells() {
             // Far from defects the director turns little from cell to cell.
-            if self.order[cell] > 0.95 * self.largest {
+            if self.order[cell] > 0.95 * self.largest || !self.fluid[cell] {
                 continue;
             }
             for axis in 0..3 {

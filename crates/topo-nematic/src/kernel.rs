@@ -206,8 +206,12 @@ fn shifted_out<L: Lanes>(token: L::Token, rest: &[L::Scalar], last: L::Scalar) -
 /// 0 for the lanes of the last vector of `n` cells that the vector before has covered.
 #[inline(always)]
 fn unseen<L: Lanes>(token: L::Token, n: usize) -> L {
+    let n_covered = L::N - n % L::N;
     let mut lanes = [L::Scalar::of(1.0); WIDEST];
-    lanes[..L::N - n % L::N].fill(L::Scalar::of(0.0));
+    // Lane by lane: filled as a slice it is a call, for which all vectors in use are put aside.
+    for (i, lane) in lanes[..L::N].iter_mut().enumerate() {
+        *lane = L::Scalar::of(f64::from(u8::from(i >= n_covered)));
+    }
     L::load(token, &lanes)
 }
 

@@ -103,14 +103,19 @@ fn low_cells(state: &NematicState, particle: &Particle, threshold: f64) -> Vec<L
     let grid = state.grid();
     let mut low = Vec::new();
     let [nx, ny, nz] = grid.cells();
+    let (q, n) = (state.q_tensor(), grid.n_cells());
+    // most cells are ordered: a plain loop along the row says so first
+    let mut may_be_low = vec![false; nx];
     for k in 0..nz {
         for j in 0..ny {
+            let first = grid.index([0, j, k]);
+            let row: [&[f64]; 5] = std::array::from_fn(|c| &q[c * n + first..][..nx]);
+            for (i, low) in may_be_low.iter_mut().enumerate() {
+                *low = !is_ordered_above(&row.map(|c| c[i]), threshold);
+            }
             let is_fluid = state.fluid_in_row(j, k);
-            for i in (0..nx).filter(|i| is_fluid(*i)) {
-                let tensor = state.tensor(grid.index([i, j, k]));
-                if is_ordered_above(&tensor, threshold) {
-                    continue;
-                }
+            for i in (0..nx).filter(|i| may_be_low[*i] && is_fluid(*i)) {
+                let tensor = row.map(|c| c[i]);
                 let order = largest_eigenvalue(&tensor);
                 if order >= threshold {
                     continue;
