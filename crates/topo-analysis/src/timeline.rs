@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 use topo_core::Vector3;
-use topo_knots::{KnotTable, LinkTable, identify_open, identify_open_link};
+use topo_knots::{KnotError, KnotTable, LinkTable, identify_open, identify_open_link};
 
 use crate::AnalysisError;
 
@@ -50,7 +50,7 @@ impl Timeline {
     /// Finds the types of the samples of a discharge: of every `stride`-th, and of all between two that differ.
     ///
     /// # Errors
-    /// A curve that runs through itself or is not finite.
+    /// A curve that runs through itself or is not finite; one that is too tangled to be named is `unknown`.
     ///
     /// # Validation
     /// `law_a_cut_component_slips_out_of_its_link`, `law_a_cut_ring_has_a_time_of_untying`
@@ -102,7 +102,13 @@ impl Timeline {
         }
         let mut typed: Vec<Option<TypedSample>> = vec![None; times.len()];
         let look = |k: usize| -> Result<Option<TypedSample>, AnalysisError> {
-            let (knot, probability, is_free) = find(k)?;
+            // a curve too tangled to be named is followed all the same
+            let (knot, probability, is_free) = match find(k) {
+                Err(AnalysisError::Knot(KnotError::TooComplicated { .. })) => {
+                    ("unknown".to_owned(), 1.0, false)
+                }
+                found => found?,
+            };
             Ok(Some(TypedSample {
                 sample: k,
                 time: times[k],
@@ -223,6 +229,21 @@ mod tests {
         Timeline {
             samples: names.iter().enumerate().map(typed).collect(),
         }
+    }
+
+    #[test]
+    fn what_is_too_tangled_is_unknown() {
+        let find = |k: usize| match k {
+            0 => Err(KnotError::TooComplicated { n_crossings: 999 }.into()),
+            1 => Ok(("3_1".to_owned(), 0.9, false)),
+            _ => Ok((UNKNOT.to_owned(), 1.0, true)),
+        };
+        let settings = TimelineSettings::default();
+        let found = Timeline::by(&[0.0, 1.0, 2.0], settings, find).unwrap();
+        assert_eq!(found.sequence(), ["unknown", "3_1", "0_1"]);
+        assert_eq!(found.untying_time(), Some(1.5));
+        let wrong = |_| Err(KnotError::NoLink.into());
+        assert!(Timeline::by(&[0.0], settings, wrong).is_err());
     }
 
     #[test]
