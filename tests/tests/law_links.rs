@@ -6,8 +6,7 @@ use topo_core::{Polyline, RunHooks};
 use topo_knots::LinkTable;
 use topo_rod::{
     Accuracy, ChargeSettings, ChargedRod, ContactParameters, CutSite, DischargeSettings,
-    EndCondition, EndMotion, Ends, FrictionParameters, Guards, RodBattery, RodParameters,
-    RodSample, RodState,
+    EndCondition, EndMotion, Ends, FrictionParameters, Guards, RodBattery, RodParameters, RodState,
 };
 use topo_tests::{curves, run};
 
@@ -234,12 +233,6 @@ fn law_the_centroid_of_a_link_is_kept() {
     assert!(whole.norm() < 1e-11, "{:.1e}", whole.norm());
 }
 
-/// Vertices of each component.
-fn parts(s: &RodSample) -> Vec<&[V]> {
-    let chains = s.state.components().iter();
-    chains.map(|c| &s.state.vertices()[c.vertices()]).collect()
-}
-
 /// One ring of a Hopf link cut and straightened: what is left of their linking integral, how far apart they are, and whether the types over time end with
 /// a free rod.
 fn cut_and_straightened(at: f64) -> (f64, f64, bool) {
@@ -279,7 +272,7 @@ fn cut_and_straightened(at: f64) -> (f64, f64, bool) {
         .record
         .samples
         .iter()
-        .map(|s| (s.time, parts(s)))
+        .map(|s| (s.time, s.state.component_vertices().collect()))
         .collect();
     let settings = TimelineSettings::default();
     let types = Timeline::of_links(&timed, 1, LinkTable::builtin(), settings, 0).unwrap();

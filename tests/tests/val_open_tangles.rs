@@ -227,7 +227,7 @@ fn check_forces(states: &[Held]) {
 }
 
 /// Held still, an overhand knot pulls with −dE/de, and as hard with friction as without: friction is viscous. Drawn, it takes more work with friction.
-/// Edges are a sixth of h, as the force of strands that touch vertex by vertex is rough: with edges of h/4 forces at rest scatter by 15 %.
+/// Edges are a sixth of h, as the force of strands that touch vertex by vertex is rough: with edges of h/2 forces at rest scatter by a fifth.
 #[test]
 fn val_held_knots_pull_with_the_gradient_of_their_energy() {
     let [smooth, rough] = [0.0, 0.1].map(|ratio| pull_in_stages(100.0, 600, 20.0, 5, ratio));

@@ -31,6 +31,7 @@ mod starts;
 mod sweep;
 mod tie;
 mod tied;
+mod types;
 mod variants;
 
 pub use accuracy::{ACCURACY_CASES, AccuracyRow, measure_accuracy, reference_scene};

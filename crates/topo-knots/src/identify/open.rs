@@ -61,15 +61,7 @@ pub fn identify_open(
     table: &KnotTable,
 ) -> Result<OpenKnotType, KnotError> {
     let vertices = &*usable_vertices(vertices, false)?;
-    if n_closures == 0 {
-        let expected = "at least one closure is needed, 32 is usual";
-        return Err(KnotError::Setting {
-            name: "n_closures",
-            value: 0.0,
-            expected,
-        });
-    }
-    let far = far_points(vertices, n_closures, seed);
+    let far = far_points(vertices, n_closures, seed)?;
     let mut reducer = Reducer::default();
     reducer.load(vertices, false);
     if let [first, .., last] = reducer.x[..] {
@@ -123,7 +115,15 @@ fn close(
     classify(reducer, table, Care::Name)
 }
 
-pub(crate) fn far_points(vertices: &[V], n: usize, seed: u64) -> Vec<V> {
+/// At least one point, in directions spread over the sphere.
+pub(crate) fn far_points(vertices: &[V], n: usize, seed: u64) -> Result<Vec<V>, KnotError> {
+    if n == 0 {
+        return Err(KnotError::Setting {
+            name: "n_closures",
+            value: 0.0,
+            expected: "at least one closure is needed, 32 is usual",
+        });
+    }
     let centre = vertices.iter().sum::<V>() / vertices.len() as f64;
     let radius = vertices
         .iter()
@@ -131,7 +131,7 @@ pub(crate) fn far_points(vertices: &[V], n: usize, seed: u64) -> Vec<V> {
         .fold(0.0, f64::max);
     // An irrational offset keeps rays out of the planes that symmetric curves lie in.
     let offset = V::new(1e-3, PI * 1e-4, -2e-4) * radius;
-    fibonacci_directions(n, seed)
+    Ok(fibonacci_directions(n, seed)
         .map(|d| centre + offset + FAR * radius.max(f64::MIN_POSITIVE) * d)
-        .collect()
+        .collect())
 }

@@ -261,7 +261,7 @@ fn common_reduction_changes_no_closure() {
         chain.truncate(chain.len() * 4 / 5);
         let found = identify_open(&chain, 24, 7, &table).expect("a chain");
         let mut shares = std::collections::BTreeMap::new();
-        for point in open::far_points(&chain, 24, 7) {
+        for point in open::far_points(&chain, 24, 7).expect("closures") {
             let mut closed = chain.clone();
             closed.push(point);
             *shares

@@ -152,11 +152,23 @@ impl LinkType {
 /// [kauffman1987]: https://doi.org/10.1016/0040-9383(87)90009-7
 /// [kauffman1990]: https://doi.org/10.1090/S0002-9947-1990-0958895-7
 pub fn identify_link(components: &[&[V]], table: &LinkTable) -> Result<LinkType, KnotError> {
+    identify_link_of(components, &vec![None; components.len()], table)
+}
+
+/// The same, where the types of some components are known.
+pub(super) fn identify_link_of(
+    components: &[&[V]],
+    known: &[Option<KnotType>],
+    table: &LinkTable,
+) -> Result<LinkType, KnotError> {
     if components.len() < 2 {
         return Err(KnotError::NoLink);
     }
     let knots = KnotTable::builtin();
     let own = |(k, vertices): (usize, &&[V])| {
+        if let Some(kind) = &known[k] {
+            return Ok(kind.clone());
+        }
         identify(vertices, &knots).map_err(|reason| KnotError::Component {
             component: k + 1,
             reason: Box::new(reason),

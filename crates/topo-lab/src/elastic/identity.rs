@@ -21,6 +21,7 @@ pub(crate) fn fingerprint(scene: &ElasticScene, case: &ElasticCase, entry: &Entr
     if starts_from_two_images(scene, case, entry) {
         all["images"] = 2.into();
     }
+    // earlier programs left the types of links out
     if case.n_components() > 1 {
         all["typed_links"] = true.into();
     }

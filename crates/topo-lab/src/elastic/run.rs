@@ -2,10 +2,9 @@
 
 use std::path::Path;
 
-use topo_core::Vector3;
 use topo_core::{CpuClock, CurveError, Polyline, Progress, StopReason};
-use topo_knots::{KnotError, LinkTable, identify};
-use topo_rod::{ChargedRod, Discharge, Guards, PhaseReport, RodBattery, RodSample, RunHooks};
+use topo_knots::{KnotError, identify};
+use topo_rod::{ChargedRod, Guards, PhaseReport, RodBattery, RunHooks};
 
 use super::breaking;
 use super::case::ElasticCase;
@@ -16,10 +15,11 @@ use super::observable::further;
 use super::record::{CaseResults, write_case};
 use super::sites::{Chosen, place, site, sites};
 use super::tied::label;
+use super::types::timeline;
 use crate::LabError;
 use crate::folder::{Outcome, forget_checkpoints};
 use crate::sweep::Place;
-use topo_analysis::{DischargeTimes, ELASTIC_SHARES, SweepRow, Timeline, Warning, Warnings};
+use topo_analysis::{DischargeTimes, ELASTIC_SHARES, SweepRow, Warning, Warnings};
 
 /// A charged case.
 #[derive(Debug)]
@@ -258,39 +258,6 @@ fn failure(charged: &ChargedRod, runs: &[CutResults]) -> Option<String> {
         let at = run.cut;
         (!stop.is_success()).then(|| format!("discharge after the cut at {at:.4} stopped: {stop}"))
     })
-}
-
-/// Knot types of a discharge. Those of a mirror image are found on the image of its shapes, which is that of the knot itself: a
-/// type is that of closures in some directions, and these would be others.
-fn timeline(inputs: &CaseInputs<'_>, discharge: &Discharge) -> Result<Timeline, LabError> {
-    let (scene, seed) = (inputs.scene, inputs.case.seed);
-    let samples = &discharge.record.samples;
-    if inputs.case.n_components() > 1 {
-        let timed: Vec<_> = samples.iter().map(|s| (s.time, parts(s))).collect();
-        let (open, table) = (discharge.component, LinkTable::builtin());
-        let timeline = Timeline::of_links(&timed, open, table, scene.timeline, seed)?;
-        return Ok(timeline);
-    }
-    let is_mirror_image = inputs.case.entry(inputs.table)?.is_mirror_image();
-    let seen = |s: &RodSample| -> Vec<Vector3<f64>> {
-        let side = if is_mirror_image { -1.0 } else { 1.0 };
-        let vertices = s.state.vertices().iter();
-        vertices.map(|x| [x.x, x.y, side * x.z].into()).collect()
-    };
-    let curves: Vec<_> = samples.iter().map(seen).collect();
-    let timed: Vec<_> = samples.iter().zip(&curves).collect();
-    let timed: Vec<_> = timed.iter().map(|(s, x)| (s.time, x.as_slice())).collect();
-    let timeline = Timeline::of(&timed, inputs.table, scene.timeline, seed)?;
-    Ok(match is_mirror_image {
-        true => timeline.mirrored(inputs.table),
-        false => timeline,
-    })
-}
-
-/// Vertices of each component.
-fn parts(s: &RodSample) -> Vec<&[Vector3<f64>]> {
-    let chains = s.state.components().iter();
-    chains.map(|c| &s.state.vertices()[c.vertices()]).collect()
 }
 
 fn phase_warnings(phase: &str, report: &PhaseReport, warnings: &mut Warnings) {

@@ -74,6 +74,12 @@ impl RodState {
         Ok(Polyline::new(self.vertices.clone(), chain.is_closed())?)
     }
 
+    /// The vertices of each component, in h.
+    pub fn component_vertices(&self) -> impl Iterator<Item = &[Vector3<f64>]> {
+        let chains = self.components().iter();
+        chains.map(|chain| self.vertices_of(chain))
+    }
+
     /// The centreline of each component.
     ///
     /// # Errors
