@@ -216,15 +216,12 @@ impl Load {
         let EndLoad {
             spring,
             rest_length,
-            dashpot,
             ..
         } = self.settings;
         let x = state.vertices();
         let d = self.line.relative_of(|i| x[i])
             - self.line.from.map_or(self.anchor, |_| Vector3::zeros());
         let square = d.norm_squared() + UNDIRECTED * UNDIRECTED;
-        let damping = (d * d.transpose() + Matrix3::from_diagonal_element(UNDIRECTED * UNDIRECTED))
-            * (dashpot / square);
         let (energy, force) = if rest_length == 0.0 {
             (0.5 * spring * d.norm_squared(), d * -spring)
         } else {
@@ -238,8 +235,22 @@ impl Load {
             line: d,
             energy,
             force,
-            damping,
+            damping: self.damping_along(d),
         }
+    }
+
+    /// Resistance of the dashpot to relative motion where its line is `d`: c along it, and across it c q², q = ε²/(|d|² + ε²).
+    fn damping_along(&self, d: Vector3<f64>) -> Matrix3<f64> {
+        let square = d.norm_squared() + UNDIRECTED * UNDIRECTED;
+        let share = UNDIRECTED * UNDIRECTED / square;
+        let along = d * d.transpose() * ((1.0 + share) / square);
+        (along + Matrix3::from_diagonal_element(share * share)) * self.settings.dashpot
+    }
+
+    /// That over the last step, along the mean of the lines before and after it: across that line a step that turns it as a whole moves
+    /// its ends, not along it.
+    fn mean_damping(&self) -> Matrix3<f64> {
+        self.damping_along((self.accepted.line + self.here.line) * 0.5)
     }
 
     /// Regularised length of a spring at rest.
@@ -291,11 +302,29 @@ impl Load {
         stiffness.further.sort_by_key(|p| (p.0, p.1));
     }
 
-    /// Resistance of the dashpot to the displacements u and v of a step, per time, with the mean of its two ends.
+    /// Resistance of the dashpot to the displacements u and v of a step, per time.
     pub(crate) fn form(&self, u: &[f64], v: &[f64]) -> f64 {
-        let mean = (self.accepted.damping + self.here.damping) * 0.5;
-        let relative = |u| self.line.relative(u, self.n_vertices);
-        relative(u).dot(&(mean * relative(v)))
+        self.form_of(self.relative(u), self.relative(v))
+    }
+
+    /// The same of relative motions of its two ends.
+    pub(crate) fn form_of(&self, u: Vector3<f64>, v: Vector3<f64>) -> f64 {
+        u.dot(&(self.mean_damping() * v))
+    }
+
+    /// Relative motion of its two ends in a component-major vector.
+    pub(crate) fn relative(&self, u: &[f64]) -> Vector3<f64> {
+        self.line.relative(u, self.n_vertices)
+    }
+
+    /// What of a change of rate over the last step, from `before` to `after`, is due to the turning of its line alone: nothing moves
+    /// along the line of ends that go round each other, though their velocities turn.
+    pub(crate) fn turning(&self, before: &[f64], after: &[f64]) -> Vector3<f64> {
+        let unit = |d: Vector3<f64>| d / d.norm().hypot(UNDIRECTED);
+        let mean = unit((self.accepted.line + self.here.line) * 0.5);
+        let [then, now] = [(before, &self.accepted), (after, &self.here)]
+            .map(|(rate, pull)| self.relative(rate).dot(&(mean - unit(pull.line))));
+        mean * (now - then)
     }
 
     /// Energy that the spring has taken up in the last step.
@@ -316,8 +345,7 @@ impl Load {
         } else {
             return Vector3::zeros();
         };
-        let mean = (self.accepted.damping + self.here.damping) * 0.5;
-        mean * self.line.relative_of(velocity) * side
+        self.mean_damping() * self.line.relative_of(velocity) * side
     }
 }
 

@@ -40,6 +40,7 @@ use parts::{Accepted, Frozen};
 pub(crate) use memory::ModelMemory;
 #[cfg(test)]
 pub(crate) use memory::PARTS;
+pub(crate) use motor::Drive;
 pub(crate) use parts::{CHANNELS, LOAD};
 
 /// Terms, mobility, guards and ledger of one rod.
@@ -59,8 +60,8 @@ pub struct RodModel {
     load: Option<Box<Load>>,
     /// The ends in time, and what they do at present.
     driven: Option<Box<(GripSchedule, GripSegment)>>,
-    /// What turns the ends of a closed rod against each other.
-    motor: Option<Motor>,
+    /// What turns the ends of closed rods against each other.
+    motor: Option<Box<Motor>>,
     held_vertices: Vec<(usize, Vector3<f64>)>,
     held_edges: Vec<(usize, f64)>,
     centreline: CentrelineViscosity,
@@ -100,6 +101,8 @@ struct Evaluation {
     force: Force,
     energies: Vec<f64>,
     couplings: Vec<(u32, u32, f64)>,
+    /// Elastic torques of joints whose ends are turned against each other.
+    joints: Vec<f64>,
 }
 
 /// `n` flags, those of `places` set.
@@ -300,7 +303,7 @@ impl Model for RodModel {
     type State = RodState;
 
     fn n_dof(&self) -> usize {
-        3 * self.n_vertices + self.n_turns() + usize::from(self.has_clock())
+        self.drives().end + usize::from(self.has_clock())
     }
 
     fn rate(&mut self, state: &RodState, rate: &mut [f64]) -> Result<(), Rejection> {
@@ -318,10 +321,9 @@ impl Model for RodModel {
         self.stamps.set(self.stamps.get() + 1);
         from.moved_by(step, self.twist.is_some(), self.stamps.get(), to);
         if self.has_clock() {
-            let passed = step[step.len() - 1];
-            to.set_clock(from.clock() + passed);
+            to.set_clock(from.clock() + step[step.len() - 1]);
             if let Some(motor) = &self.motor {
-                motor.twist(passed, to);
+                motor.twist(&step[self.drives()], to);
             }
         }
         Ok(())
@@ -330,7 +332,7 @@ impl Model for RodModel {
     /// Largest component of the displacement error in h; rotations count by the arc through which they move the surface.
     fn error_norm(&self, error: &[f64]) -> f64 {
         let (moved, turned) = error.split_at(3 * self.n_vertices);
-        let turned = topo_core::max_norm(&turned[..self.n_turns()]);
+        let turned = topo_core::max_norm(&turned[..self.n_turns() + self.drives().len()]);
         topo_core::max_norm(moved).max(ROTATION_WEIGHT * turned)
     }
 
@@ -368,7 +370,7 @@ impl Model for RodModel {
         }
         self.evaluate(to)?;
         let total = self.total();
-        let rise = total - self.accepted.total - self.external_work(from, to, step, dt).max(0.0);
+        let rise = total - self.accepted.total - self.external_work(from, step, dt).max(0.0);
         if rise > self.rises.allowed(&self.guards, self.accepted.total) {
             return Err(Rejection::EnergyRise {
                 relative: rise / self.accepted.total.abs().max(1e-12),
@@ -378,7 +380,7 @@ impl Model for RodModel {
     }
 
     fn accepted(&mut self, from: &RodState, to: &RodState, step: &[f64], dt: f64) {
-        let work = self.external_work(from, to, step, dt);
+        let work = self.external_work(from, step, dt);
         self.expected.step();
         self.ledger.add_work(work);
         let total = self.total();

@@ -150,6 +150,12 @@ impl NewtonMatrix {
         }
     }
 
+    /// Whether the dashpot of a load resists in another way by now than in the matrix, because its line has turned. A strong dashpot
+    /// along a line that has turned by a few degrees lets the ends drift by many times the tolerance.
+    pub(crate) fn is_stale(&self, damping: &Matrix3<f64>) -> bool {
+        self.load.is_some_and(|(_, own)| own != *damping)
+    }
+
     /// Bytes held for further components.
     pub(crate) fn n_component_bytes(&self) -> usize {
         self.drag.as_ref().map_or(0, DragCorrection::n_bytes)

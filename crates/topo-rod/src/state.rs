@@ -33,6 +33,8 @@ pub struct RodState {
     stamp: u64,
     /// Time in η/E_b, of a rod whose ends are driven in time; else it stands at 0.
     clock: f64,
+    /// Turn of the two ends of each component against each other so far, in radians; empty unless they are twisted in time.
+    turns: Vec<f64>,
 }
 
 /// How vertices are joined, and what their material is like at rest.
@@ -90,6 +92,7 @@ impl RodState {
             joined: Layout::of([Chain::new(n, closed, rest_length)]).into(),
             stamp: 0,
             clock: 0.0,
+            turns: Vec::new(),
         };
         for i in state.interior() {
             let (a, b) = (state.tangent(state.edge_before(i)), state.tangent(i));
@@ -140,6 +143,8 @@ impl RodState {
             && self.joined.layout == fresh.joined.layout
             && (self.vertices.len(), self.twists.len()) == (n, n)
             && self.clock.is_finite()
+            && self.turns.len() == fresh.turns.len()
+            && self.turns.iter().all(|x| x.is_finite())
             && self.vertices.iter().flatten().all(|x| x.is_finite())
             && self.twists.iter().all(|x| x.is_finite())
     }
@@ -154,13 +159,27 @@ impl RodState {
         self.clock = time;
     }
 
-    /// Adds to the twist of a vertex, in radians.
-    pub(crate) fn add_twist(&mut self, vertex: usize, turn: f64) {
-        self.twists[vertex] += turn;
+    /// Turns the two ends of component `c`, held together at its first vertex `seam`, against each other, in radians.
+    pub(crate) fn turn_seam(&mut self, c: usize, seam: usize, turn: f64) {
+        self.twists[seam] += turn;
+        self.turns[c] += turn;
     }
 
-    /// The rods with a twist density, in radians per h, taken out of all joints.
+    /// Turn of the two ends of component `c` against each other so far, in radians.
+    pub(crate) fn turned_by(&self, c: usize) -> f64 {
+        self.turns.get(c).copied().unwrap_or(0.0)
+    }
+
+    /// Twist of an interior vertex beyond the natural one, in radians.
+    #[inline]
+    pub(crate) fn excess_twist(&self, i: usize) -> f64 {
+        let natural = self.rest().map_or(0.0, |rest| rest.twist[i]);
+        self.twists[i] - self.chain_of(i).rest_length() * natural
+    }
+
+    /// The rods with a twist density, in radians per h, taken out of all joints, before their ends are turned against each other.
     pub(crate) fn untwisted(mut self, density: f64) -> Self {
+        self.turns = vec![0.0; self.n_components()];
         let chains = self.components().to_vec();
         for chain in chains {
             chain
@@ -202,6 +221,7 @@ impl RodState {
             },
             stamp: 0,
             clock: 0.0,
+            turns: Vec::new(),
         })
     }
 
@@ -221,6 +241,7 @@ impl RodState {
             },
             stamp: 0,
             clock: 0.0,
+            turns: Vec::new(),
         })
     }
 
@@ -281,6 +302,7 @@ impl RodState {
             },
             stamp: self.stamp + 1,
             clock: 0.0,
+            turns: Vec::new(),
         })
     }
 
@@ -300,6 +322,7 @@ impl RodState {
         to.joined.layout.clone_from(&self.joined.layout);
         to.stamp = stamp;
         to.clock = self.clock;
+        to.turns.clone_from(&self.turns);
         to.vertices.clear();
         to.vertices.extend(
             (0..n).map(|i| self.vertices[i] + Vector3::new(step[i], step[n + i], step[2 * n + i])),

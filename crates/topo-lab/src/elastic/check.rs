@@ -62,7 +62,7 @@ pub(super) fn faults(
     }
     let refuse = |e| refused(document, e);
     see(scene.accuracy.checked().map(drop).map_err(refuse));
-    see(scene.charge.checked().map(drop).map_err(refuse));
+    see(scene.charge.clone().checked().map(drop).map_err(refuse));
     if let Some(si) = scene.si {
         let wrong = |e: InvalidValue| {
             let key = format!("si.{}", e.name);
@@ -260,6 +260,7 @@ fn refused(document: &Document<'_>, error: RodError) -> LabError {
             let key = "discharge.ends";
             document.wrong(key, document.written(key), reason)
         }
+        RodError::Course { key, reason } => document.wrong(key, document.written(key), reason),
         RodError::Load { key, reason } => {
             let key = if document.has(key) {
                 key

@@ -404,7 +404,7 @@ impl ElasticScene {
             charge: ChargeTable {
                 duration: Some(self.charge.duration),
                 breaking: self.charge.breaking,
-                twisting: self.charge.twisting,
+                twisting: self.charge.twisting.clone(),
             },
             pull: self.pull.clone().map(|pull| PullTable {
                 grips: pull.grips,

@@ -25,6 +25,13 @@ pub(crate) fn fingerprint(scene: &ElasticScene, case: &ElasticCase, entry: &Entr
     if case.n_components() > 1 {
         all["typed_links"] = true.into();
     }
+    // earlier programs booked work across the line of a load, and turned seams by the clock
+    if scene.discharge.load.is_some() || scene.load.is_some() {
+        all["loads"] = 2.into();
+    }
+    if scene.charge.twisting.is_some() {
+        all["twisting"] = 2.into();
+    }
     if let Some(pull) = &scene.pull {
         all["pull"] = json!(pull);
     }

@@ -47,9 +47,8 @@ const LAST_SHARE: f64 = 0.99999;
 const WORKED_SHARE: f64 = 0.99;
 /// And when, in T_0: the stiffest dashpots of the study take thousands.
 const LONGEST_WORK: f64 = 1e5;
-/// Tolerance of work, in h, or that of the preset if it is finer: at 1e-3 the energy account of an untwisted trefoil on the stiffest
-/// dashpot is open by 4 % and its work 11 % too large.
-const WORK_TOLERANCE: f64 = 3e-4;
+/// Tolerance of work, in h, or that of the preset if it is finer: at 1e-4 every energy account closes to 1e-3.
+const WORK_TOLERANCE: f64 = 1e-4;
 /// Its output times per decade: only sums over the discharge are drawn.
 const WORK_OUTPUTS: f64 = 4.0;
 /// Edges of a rod that works, in a draft.
@@ -58,10 +57,10 @@ const DRAFT_WORK_EDGES: usize = 100;
 /// Twists θ'h at which knots work on a load, and the resistances c of its dashpot, in η/h.
 fn work_of(preset: Preset) -> (&'static [f64], &'static [f64]) {
     match preset {
-        Preset::Draft => (&[0.0, 2.0], &[0.1, 1.0, 10.0]),
+        Preset::Draft => (&[0.0, 2.0], &[0.1, 1.0, 30.0]),
         _ => (
             &[-2.0, -1.0, 0.0, 1.0, 2.0],
-            &[0.003, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0],
+            &[0.003, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0],
         ),
     }
 }
@@ -315,7 +314,7 @@ mod tests {
     #[test]
     fn every_knot_works_on_every_load() {
         let table = topo_knots::KnotTable::builtin();
-        for (preset, n_twists, n_loads) in [(Preset::Draft, 2, 3), (Preset::Standard, 5, 8)] {
+        for (preset, n_twists, n_loads) in [(Preset::Draft, 2, 3), (Preset::Standard, 5, 10)] {
             let work = of(preset, Purpose::Work);
             assert_eq!(work.len(), 1);
             let cases = work[0].cases(&table).unwrap();

@@ -9,10 +9,11 @@ use super::cut::{CutCandidate, candidates_of};
 use super::hooks::RunHooks;
 use super::phase::{Course, Finished, RodPhaseRun};
 use super::record::{PhaseReport, Recorder, RunRecord, Scales};
-use crate::{Breaking, Broken, RodEnds, RodError, RodState};
+use crate::model::Drive;
+use crate::{Breaking, Broken, RodEnds, RodError, RodState, TimeCourse};
 
 /// How long a rod is charged and how often it is sampled.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct ChargeSettings {
     /// Duration of the relaxation, in T_0: long enough to reach the buckled plateau, short enough that instabilities of that
@@ -31,14 +32,21 @@ pub struct ChargeSettings {
     pub twisting: Option<Twisting>,
 }
 
-/// Twisting in time: the rod is tied without twist, relaxes for the duration of the charge, is twisted at a constant rate while its ends
-/// are held together, is fused, and relaxes for that duration again.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+/// Twisting in time: the rods are tied without twist, relax for the duration of the charge, are twisted while the ends of each are held
+/// together, are fused, and relax for that duration again.
+///
+/// The ends are turned against each other at a constant rate, by θ'L in all; or by a torque, however far that takes them.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Twisting {
     /// Time that the twisting takes.
     #[schemars(extend("x-unit" = "T_0", "exclusiveMinimum" = 0), example = 5.0)]
     pub over: f64,
+    /// Torque that turns the ends, in that which a straight rod of the twist θ' of the case carries, (α/4) θ' h E_b A h: constant, or in
+    /// time from the start of the twisting.
+    #[schemars(extend("x-unit" = "α θ'h/4 E_b A h", "x-default" = "a constant rate"), example = 1.0)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub torque: Option<TimeCourse>,
 }
 
 impl Default for ChargeSettings {
@@ -63,8 +71,11 @@ impl ChargeSettings {
         positive("charge.first_output", self.first_output)?;
         positive("charge.outputs_per_decade", self.outputs_per_decade)?;
         self.breaking.map(Breaking::checked).transpose()?;
-        if let Some(twisting) = self.twisting {
+        if let Some(twisting) = &self.twisting {
             positive("charge.twisting.over", twisting.over)?;
+            if let Some(torque) = &twisting.torque {
+                torque.checked("charge.twisting.torque", false)?;
+            }
         }
         Ok(self)
     }
@@ -95,16 +106,19 @@ impl RodBattery {
         settings: &ChargeSettings,
         hooks: &mut RunHooks<'_>,
     ) -> Result<ChargedRod, RodError> {
-        settings.checked()?;
+        let settings = &settings.clone().checked()?;
         let mut state = self.start.clone();
         let scales = Scales::of(&state);
         let mut until = settings.duration * scales.time;
         let mut model = self.model(&state, RodEnds::default())?;
-        if let (Some(twisting), Some(density)) = (settings.twisting, self.parameters.twist) {
+        if let (Some(twisting), Some(density)) = (&settings.twisting, self.parameters.twist) {
             let times = [until, until + twisting.over * scales.time];
-            let angle = density * state.length();
+            let drive = match &twisting.torque {
+                Some(torque) => Drive::Torque(torque.scaled(scales.time)),
+                None => Drive::Turn,
+            };
             state = state.untwisted(density);
-            model = model.with_twisting(angle, times, &state)?;
+            model = model.with_twisting(density, drive, times, &state)?;
             until += times[1];
         }
         model.start(&state)?;

@@ -1,5 +1,7 @@
 //! What must not change while components stay closed: Tw + Wr of each, and the linking number of each two.
 
+use std::f64::consts::TAU;
+
 use serde::Serialize;
 
 use crate::RodState;
@@ -46,7 +48,7 @@ impl Links {
         for (c, start, drift) in &mut self.own {
             let sum = state
                 .writhe_of(*c)
-                .and_then(|w| Ok(w + state.total_twist_of(*c)?));
+                .and_then(|w| Ok(w + (state.total_twist_of(*c)? - state.turned_by(*c) / TAU)));
             follow(start, drift, sum.unwrap_or(f64::NAN), is_first);
         }
         for pair in &mut self.pairs {

@@ -11,7 +11,7 @@ use super::tips::tips_have_parted;
 use crate::model::ModelMemory;
 use crate::{Breaking, RodError, RodModel, RodState};
 
-const SCHEMA: &str = "rod-phase/2";
+const SCHEMA: &str = "rod-phase/3";
 
 /// What ends a phase, and what is reported of it.
 #[derive(Clone, Copy)]

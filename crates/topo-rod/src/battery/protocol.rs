@@ -8,7 +8,7 @@ use super::hooks::RunHooks;
 use crate::RodError;
 
 /// Charge, cut, discharge: what is done to a battery.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Protocol {
     /// How it is charged.
     pub charge: ChargeSettings,

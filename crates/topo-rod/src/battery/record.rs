@@ -147,8 +147,6 @@ pub(super) struct Recorder {
     links: Links,
     /// Those of the present step.
     grips: [Option<GripForce>; 2],
-    /// Turn of the ends against each other so far, in radians.
-    twisted: f64,
 }
 
 impl Recorder {
@@ -176,7 +174,6 @@ impl Recorder {
             opened: None,
             links: Links::default(),
             grips: [None; 2],
-            twisted: 0.0,
         }
     }
 
@@ -218,7 +215,6 @@ impl Recorder {
 
     /// Takes the forces of the grips at the present step.
     pub(super) fn watch(&mut self, simulation: &RodSimulation) {
-        self.twisted = simulation.model().twisted_by(simulation.time());
         if simulation.model().has_grips() {
             self.grips = simulation.model().grip_forces(simulation.state());
         }
@@ -266,7 +262,7 @@ impl Recorder {
             self.links.look(state, self.has_twist);
             seen.link_drift = self.links.own_drift();
         } else if state.is_closed() && self.has_twist {
-            let link = writhe + (total_twist - self.twisted / std::f64::consts::TAU);
+            let link = writhe + (total_twist - state.turned_by(0) / std::f64::consts::TAU);
             let start = *seen.link_start.get_or_insert(link);
             seen.link_drift = Some(seen.link_drift.unwrap_or(0.0).max((link - start).abs()));
         }

@@ -1,5 +1,7 @@
 //! How the ends of an open rod are moved and loaded in time.
 
+use std::borrow::Cow;
+
 use nalgebra::Vector3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -39,12 +41,18 @@ impl Default for TimeCourse {
 
 impl TimeCourse {
     /// Times and values, in order of time.
-    fn points(&self) -> Vec<[f64; 2]> {
+    fn points(&self) -> Cow<'_, [[f64; 2]]> {
         match self {
-            Self::Constant(value) => vec![[0.0, *value]],
-            Self::Ramp(ramp) => vec![[0.0, 0.0], [ramp.over, ramp.to]],
-            Self::Table(points) => points.clone(),
+            Self::Constant(value) => vec![[0.0, *value]].into(),
+            Self::Ramp(ramp) => vec![[0.0, 0.0], [ramp.over, ramp.to]].into(),
+            Self::Table(points) => points.into(),
         }
+    }
+
+    /// Times at which its rate may change.
+    pub(crate) fn times(&self) -> impl Iterator<Item = f64> {
+        let points = self.points().into_owned();
+        points.into_iter().map(|p| p[0])
     }
 
     /// Value at a time.
@@ -73,12 +81,12 @@ impl TimeCourse {
     }
 
     /// The same with its times in another unit, of which one of the present unit is `unit`.
-    fn scaled(&self, unit: f64) -> Self {
+    pub(crate) fn scaled(&self, unit: f64) -> Self {
         let points = self.points();
         Self::Table(points.iter().map(|[t, x]| [t * unit, *x]).collect())
     }
 
-    fn checked(&self, key: &'static str, begins_at_zero: bool) -> Result<(), RodError> {
+    pub(crate) fn checked(&self, key: &'static str, begins_at_zero: bool) -> Result<(), RodError> {
         let wrong = |reason| Err(RodError::Course { key, reason });
         let points = self.points();
         if points.iter().flatten().any(|x| !x.is_finite()) {
@@ -243,10 +251,7 @@ impl GripSchedule {
             .iter()
             .flat_map(|grip| {
                 let released = grip.released;
-                let times = grip
-                    .courses()
-                    .flat_map(|(_, c, _)| c.points())
-                    .map(|p| p[0]);
+                let times = grip.courses().flat_map(|(_, c, _)| c.times());
                 let acting = times.filter(move |t| released.is_none_or(|r| *t < r));
                 acting.chain(released).collect::<Vec<f64>>()
             })

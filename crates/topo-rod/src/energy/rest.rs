@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use super::{At, Bend, EnergyTerm, Force, Stiffness, Twist};
-use crate::{Chain, RodState};
+use crate::Chain;
 
 type V = Vector3<f64>;
 
@@ -59,6 +59,25 @@ impl Bent {
         let [a, b] = self.excess;
         (a * a + b * b) / (8.0 * chain.rest_length())
     }
+
+    /// (ω − l_0 κ)/(4 l_0).
+    fn moments(&self, chain: &Chain) -> [f64; 2] {
+        self.excess.map(|x| x / (4.0 * chain.rest_length()))
+    }
+
+    /// Torque on the edge before the vertex or on that after it, where the curvature binormal is `kb`.
+    fn torque(&self, chain: &Chain, kb: &V, side: usize) -> f64 {
+        let (w, [one, two]) = (self.moments(chain), &self.edges[side]);
+        0.5 * (w[1] * kb.dot(one) - w[0] * kb.dot(two))
+    }
+}
+
+impl CurvedBend {
+    /// Torque on the edge behind vertex `i` of component `c` by the bend of that vertex alone, per area, in E_b h.
+    pub(crate) fn torque_behind(at: At<'_>, c: usize, i: usize) -> f64 {
+        let chain = &at.state.components()[c];
+        Bent::at(at, c, chain, i).torque(chain, &at.geometry.binormal[i], 1)
+    }
 }
 
 impl EnergyTerm for CurvedBend {
@@ -84,7 +103,7 @@ impl EnergyTerm for CurvedBend {
                 let (before, after) = (chain.edge_before(i), i);
                 let (bent, kb) = (Bent::at(at, c, chain, i), g.binormal[i]);
                 energy += bent.energy(chain);
-                let w = bent.excess.map(|x| x / (4.0 * chain.rest_length()));
+                let w = bent.moments(chain);
                 let on_kb = bent.directors[0] * w[0] + bent.directors[1] * w[1];
                 let (l0, l1) = (g.edge_length[before], g.edge_length[after]);
                 let (e0, e1) = (g.tangent[before] * l0, g.tangent[after] * l1);
@@ -97,8 +116,8 @@ impl EnergyTerm for CurvedBend {
                 force.vertex[before] += on_before;
                 force.vertex[i] += on_after - on_before;
                 force.vertex[chain.edge_end(after)] -= on_after;
-                for (j, [one, two]) in [before, after].into_iter().zip(bent.edges) {
-                    force.torque[j] += 0.5 * (w[1] * kb.dot(&one) - w[0] * kb.dot(&two));
+                for (side, j) in [before, after].into_iter().enumerate() {
+                    force.torque[j] += bent.torque(chain, &kb, side);
                 }
             }
         }
@@ -125,13 +144,6 @@ impl EnergyTerm for CurvedBend {
 #[derive(Debug, Clone, Copy)]
 pub struct CurvedTwist(pub Twist);
 
-impl CurvedTwist {
-    fn excess(state: &RodState, chain: &Chain, i: usize) -> f64 {
-        let natural = state.rest().map_or(0.0, |rest| rest.twist[i]);
-        state.twists()[i] - chain.rest_length() * natural
-    }
-}
-
 impl EnergyTerm for CurvedTwist {
     fn name(&self) -> &'static str {
         self.0.name()
@@ -139,17 +151,14 @@ impl EnergyTerm for CurvedTwist {
 
     fn energy(&self, at: At<'_>) -> f64 {
         let of = |chain: &Chain| {
-            let squares = chain
-                .interior()
-                .map(|i| Self::excess(at.state, chain, i).powi(2));
+            let squares = chain.interior().map(|i| at.state.excess_twist(i).powi(2));
             self.0.ratio * squares.sum::<f64>() / (8.0 * chain.rest_length())
         };
         at.state.components().iter().map(of).sum()
     }
 
     fn add_force(&self, at: At<'_>, force: &mut Force) -> f64 {
-        self.0
-            .add_torques(at, force, |chain, i| Self::excess(at.state, chain, i));
+        self.0.add_torques(at, force, |i| at.state.excess_twist(i));
         self.energy(at)
     }
 
@@ -161,7 +170,7 @@ impl EnergyTerm for CurvedTwist {
         for chain in at.state.components() {
             let l0 = chain.rest_length();
             for i in chain.interior() {
-                let excess = Self::excess(at.state, chain, i);
+                let excess = at.state.excess_twist(i);
                 density[i] += self.0.ratio * excess * excess / (8.0 * l0 * l0);
             }
         }

@@ -38,17 +38,12 @@ impl Twist {
 
     /// Adds the forces and torques of vertices whose twist, in radians, is by `excess` more than the natural one.
     #[inline]
-    pub(super) fn add_torques(
-        &self,
-        at: At<'_>,
-        force: &mut Force,
-        excess: impl Fn(&Chain, usize) -> f64,
-    ) {
+    pub(super) fn add_torques(&self, at: At<'_>, force: &mut Force, excess: impl Fn(usize) -> f64) {
         let g = at.geometry;
         for chain in at.state.components() {
             for i in chain.interior() {
                 let (before, after) = (chain.edge_before(i), i);
-                let torque = self.torque(excess(chain, i), chain.rest_length());
+                let torque = self.torque(excess(i), chain.rest_length());
                 let pull = g.binormal[i] * (0.5 * torque);
                 let on_before = pull / g.edge_length[before];
                 let on_after = pull / g.edge_length[after];
@@ -78,7 +73,7 @@ impl EnergyTerm for Twist {
 
     fn add_force(&self, at: At<'_>, force: &mut Force) -> f64 {
         let m = at.state.twists();
-        self.add_torques(at, force, |_, i| m[i]);
+        self.add_torques(at, force, |i| m[i]);
         self.energy(at)
     }
 

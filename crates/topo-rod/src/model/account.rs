@@ -190,19 +190,14 @@ impl RodModel {
         }
         a.cosine.clone_from(&self.at.geometry.cosine);
         a.couplings.clone_from(&self.at.couplings);
+        a.joints.clone_from(&self.at.joints);
         if self.is_driven {
             a.force.clone_from(&self.at.force);
         }
     }
 
     /// Work of loads and of prescribed motions over a step, with the mean of the forces at its two ends.
-    pub(super) fn external_work(
-        &self,
-        from: &RodState,
-        to: &RodState,
-        step: &[f64],
-        dt: f64,
-    ) -> f64 {
+    pub(super) fn external_work(&self, from: &RodState, step: &[f64], dt: f64) -> f64 {
         if !self.is_driven {
             return 0.0;
         }
@@ -217,9 +212,10 @@ impl RodModel {
         };
         let mut work = 0.0;
         if let Some(motor) = &self.motor {
-            let twists = [from, to].map(|state| state.twists()[motor.vertex()]);
             let cosine = |i: usize| 0.5 * (self.accepted.cosine[i] + self.at.geometry.cosine[i]);
-            work += motor.work(twists, &step[3 * n..], cosine, dt);
+            let joints = [&self.accepted.joints[..], &self.at.joints[..]];
+            let middle = from.clock() + 0.5 * dt;
+            work += motor.work(middle, joints, &step[3 * n..], self.n_edges, cosine, dt);
         }
         for placed in &self.ends {
             let ends = self.ends_at(placed, from.clock() + 0.5 * dt);
@@ -262,11 +258,15 @@ impl RodModel {
         let mut rate = std::mem::take(&mut self.rate_there);
         rate.resize(step.len(), 0.0);
         let solved = self.solve_rate(to, &mut rate).is_ok();
+        let mut turning = Vector3::zeros();
         if solved && self.accepted.rate_stamp == Some(from.stamp()) {
             self.rate_change.clear();
             let change = rate.iter().zip(&self.accepted.rate);
             self.rate_change
                 .extend(change.map(|(new, old)| (new - old) * dt));
+            if let Some(load) = &self.load {
+                turning = load.turning(&self.accepted.rate, &rate) * dt;
+            }
         } else {
             self.rate_change.clear();
             self.rate_change.resize(step.len(), 0.0);
@@ -284,29 +284,30 @@ impl RodModel {
             let several = self.centreline.drag();
             several.map_or(0.0, |several| several.drag().form(u, v))
         };
-        let loaded = |u: &[f64], v: &[f64]| self.load.as_ref().map_or(0.0, |load| load.form(u, v));
         let smooth = |u: &[f64], v: &[f64]| centreline_form(layout, u, v) + dragged(u, v);
-        let centreline = |u: &[f64], v: &[f64]| smooth(u, v) + rubbed(u, v) + loaded(u, v);
+        let centreline = |u: &[f64], v: &[f64]| smooth(u, v) + rubbed(u, v);
         let friction = rubbed(step, step);
-        let taken = loaded(step, step);
-        let slow = smooth(step, step) + friction + taken;
-        let factor = 1.0 + excess(slow, g, a, &smoothed, centreline);
-        self.ledger
-            .dissipate(0, (slow - friction - taken) * factor / dt);
+        let slow = smooth(step, step) + friction;
+        let factor = 1.0 + excess(slow, g, &a[..], &smoothed[..], centreline);
+        self.ledger.dissipate(0, (slow - friction) * factor / dt);
         self.ledger.dissipate(2, friction * factor / dt);
         if let Some(load) = &self.load {
+            let along = |u: &[f64]| load.relative(u) - turning;
+            let form = |u: Vector3<f64>, v: Vector3<f64>| load.form_of(u, v);
+            let taken = load.form(step, step);
+            let factor = 1.0 + excess(taken, g, along(a), along(&smoothed), form);
             self.ledger
                 .dissipate(CHANNELS.len(), taken * factor / dt + load.stored());
         }
         if self.twist.is_some() {
             let (old, new) = (&self.accepted.cosine, &self.at.geometry.cosine);
             let cosine = |i: usize| 0.5 * (old[i] + new[i]);
-            let twist = |u: &[f64], v: &[f64]| twist_form(layout, cosine, u, v);
-            let turned = 3 * n..3 * n + self.n_turns();
-            let mut slow = twist(&step[turned.clone()], &step[turned.clone()]);
-            if let Some(motor) = &self.motor {
-                slow += motor.form(&step[turned.clone()], cosine, dt);
-            }
+            let (motor, n_edges) = (self.motor.as_deref(), self.n_edges);
+            let driven =
+                |u: &[f64], v: &[f64]| motor.map_or(0.0, |motor| motor.form(n_edges, cosine, u, v));
+            let twist = |u: &[f64], v: &[f64]| twist_form(layout, cosine, u, v) + driven(u, v);
+            let turned = 3 * n..self.drives().end;
+            let slow = twist(&step[turned.clone()], &step[turned.clone()]);
             let factor = 1.0 + excess(slow, g, &a[turned.clone()], &smoothed[turned], twist);
             self.ledger.dissipate(1, slow * factor / dt);
         }
@@ -326,12 +327,12 @@ impl RodModel {
 const COARSEST_RESOLVENT: f64 = 1.0;
 
 /// φ − 1 in the mean over the modes of a step with the secant form `slow`.
-fn excess(
+fn excess<T: Copy>(
     slow: f64,
     g: Option<f64>,
-    a: &[f64],
-    smoothed: &[f64],
-    form: impl Fn(&[f64], &[f64]) -> f64,
+    a: T,
+    smoothed: T,
+    form: impl Fn(T, T) -> f64,
 ) -> f64 {
     if slow <= 0.0 {
         return 0.0;

@@ -41,6 +41,10 @@ impl RodModel {
             let energy = term.add_force(at, &mut self.at.force);
             self.at.energies.push(energy);
         }
+        if let Some(motor) = &self.motor {
+            self.at.joints.clear();
+            self.at.joints.extend(motor.torques(at));
+        }
         let in_time = self.driven.is_some();
         let loaded = |placed: &&PlacedEnds| in_time || placed.ends.is_driven();
         for placed in self.ends.iter().filter(loaded) {
@@ -112,10 +116,11 @@ impl RodModel {
         self.centreline
             .solve(state, &self.at.couplings, &mut rate[..3 * n]);
         if let Some(rotation) = self.rotation.as_mut() {
-            let w = &mut rate[3 * n..3 * n + self.n_edges];
+            let (w, behind) = rate[3 * n..].split_at_mut(self.n_edges);
             w.copy_from_slice(&self.at.force.torque);
             if let Some(motor) = &self.motor {
-                motor.add_torque(&self.at.geometry.cosine, w);
+                let (joints, cosine) = (&self.at.joints, &self.at.geometry.cosine);
+                motor.load(state.clock(), joints, cosine, w, behind);
             }
             for &(j, turn) in &self.held_edges {
                 w[j] = turn;
@@ -123,10 +128,10 @@ impl RodModel {
             rotation
                 .prepare(state, &self.at.geometry.cosine, 0.0)
                 .map_err(|e| unsolvable(e, "the twist mobility"))?;
-            rotation.solve(state, &self.at.geometry.cosine, 0.0, w);
+            rotation.solve(state, &self.at.geometry.cosine, 0.0, w, behind);
         }
         if self.has_clock() {
-            rate[3 * n + self.n_turns()] = 1.0;
+            rate[self.drives().end] = 1.0;
         }
         Ok(())
     }

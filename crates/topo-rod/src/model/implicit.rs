@@ -5,15 +5,19 @@ use topo_core::{LinearlyImplicit, Model, Rejection, SpectralBound};
 use super::parts::{Frozen, unsolvable};
 use super::{At, RodModel};
 use crate::RodState;
+use crate::load::Load;
 
 impl LinearlyImplicit for RodModel {
     fn prepare(&mut self, state: &RodState, g_dt: f64) -> Result<(), Rejection> {
         self.expected.look_out(state.stamp());
         // the order holds for any matrix, so one may serve several steps of about its length
+        let is_stale = |load: &Load| self.newton.is_stale(&load.accepted.damping);
+        let stale = self.load.as_deref().is_some_and(is_stale);
         if let Some(frozen) = self.frozen.as_mut() {
             let ratio = g_dt / frozen.g_dt;
             if frozen.n_uses < self.reuse
                 && self.expected.pairs().is_empty()
+                && !stale
                 && (0.6..=1.3).contains(&ratio)
             {
                 frozen.n_uses += 1;
@@ -70,7 +74,8 @@ impl LinearlyImplicit for RodModel {
         let (moved, turned) = rhs.split_at_mut(3 * self.n_vertices);
         self.newton.solve(moved);
         if let Some(newton) = self.newton_twist.as_mut() {
-            newton.solve(&mut turned[..self.n_edges]);
+            let (turned, behind) = turned.split_at_mut(self.n_edges);
+            newton.solve(turned, behind);
         }
         Ok(())
     }

@@ -53,6 +53,8 @@ impl ModelMemory {
         let remembered = (a.cosine.len() == n || a.cosine.is_empty() && !needs_cosine)
             && or_none(a.force.vertex.len(), n)
             && or_none(a.force.torque.len(), n_edges)
+            && or_none(a.joints.len(), fresh.drives().len())
+            && a.joints.iter().all(|x| x.is_finite())
             && or_none(a.rate.len(), n_dof)
             && (a.rate_stamp.is_none() || !a.rate.is_empty())
             && a.couplings.iter().all(coupled)

@@ -19,6 +19,7 @@ pub(super) struct Accepted {
     pub(super) total: f64,
     pub(super) cosine: Vec<f64>,
     pub(super) couplings: Vec<(u32, u32, f64)>,
+    pub(super) joints: Vec<f64>,
     pub(super) force: Force,
     pub(super) rate: Vec<f64>,
     pub(super) rate_stamp: Option<u64>,

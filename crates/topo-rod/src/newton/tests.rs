@@ -96,11 +96,11 @@ fn law_rotations_solve_their_equations() {
             let mut viscosity = TwistViscosity::new(fixed.clone());
             viscosity.prepare(layout, &geometry.cosine, s).unwrap();
             let mut w = given.clone();
-            viscosity.solve(layout, &geometry.cosine, s, &mut w);
+            viscosity.solve(layout, &geometry.cosine, s, &mut w, &mut []);
             let mut newton = NewtonTwist::new(fixed.clone());
             newton.prepare(layout, &geometry.cosine, s).unwrap();
             let mut step = given.clone();
-            newton.solve(&mut step);
+            newton.solve(&mut step, &mut []);
             let (found, stepped, right) = (apply(&w, s), apply(&step, s), apply(&given, 0.0));
             for j in 0..n {
                 if fixed[j] {
@@ -110,6 +110,58 @@ fn law_rotations_solve_their_equations() {
                     assert!((stepped[j] - right[j]).abs() < 1e-8, "{j}: {}", stepped[j]);
                 }
             }
+        }
+    }
+}
+
+/// The same where the turns φ of the two ends at a loose joint are unknown too: of φ, and of the edges before and behind it.
+#[test]
+fn law_loose_joints_solve_their_equations() {
+    let alone = RodState::link(&[crumpled(true)]).unwrap();
+    for state in [alone, link(50.0)] {
+        let (layout, geometry) = (state.layout(), Geometry::new(&state));
+        let (n, s) = (state.n_edges(), 0.8);
+        let closed = state.components().iter().filter(|chain| chain.is_closed());
+        let seams: Vec<usize> = closed.map(|chain| chain.first()).collect();
+        let given: Vec<f64> = (0..n + seams.len())
+            .map(|j| (1.7 * j as f64).sin())
+            .collect();
+        // M_θ + s H_θ and M_θ alone, of the definition: the edge behind a seam turns by φ more, as that joint sees it
+        let apply = |w: &[f64], s: f64| {
+            let mut out = vec![0.0; n + seams.len()];
+            for chain in state.components() {
+                let half = 0.5 / chain.rest_length();
+                let s = s * state.components()[0].rest_length() / chain.rest_length();
+                for i in chain.interior() {
+                    let (a, c) = (chain.edge_before(i), geometry.cosine[i]);
+                    let seam = seams.iter().position(|seam| *seam == i);
+                    let behind = w[i] + seam.map_or(0.0, |k| w[n + k]);
+                    out[a] += half * (w[a] - c * behind) + s * (w[a] - behind);
+                    let own = half * (behind - c * w[a]) + s * (behind - w[a]);
+                    out[i] += own;
+                    seam.iter().for_each(|k| out[n + k] += own);
+                }
+            }
+            out
+        };
+        let fixed: Vec<bool> = (0..n)
+            .map(|j| state.unused_edges().any(|k| k == j))
+            .collect();
+        let mut viscosity = TwistViscosity::new(fixed.clone());
+        viscosity.loosen(&seams);
+        viscosity.prepare(layout, &geometry.cosine, s).unwrap();
+        let mut newton = NewtonTwist::new(fixed.clone());
+        newton.loosen(&seams);
+        newton.prepare(layout, &geometry.cosine, s).unwrap();
+        let (mut solved, mut step) = (given.clone(), given.clone());
+        let (w, joints) = solved.split_at_mut(n);
+        viscosity.solve(layout, &geometry.cosine, s, w, joints);
+        let (w, joints) = step.split_at_mut(n);
+        newton.solve(w, joints);
+        let (found, stepped, right) = (apply(&solved, s), apply(&step, s), apply(&given, 0.0));
+        for j in (0..n + seams.len()).filter(|j| !fixed.get(*j).is_some_and(|f| *f)) {
+            assert!((found[j] - given[j]).abs() < 1e-8, "{j}: {}", found[j]);
+            assert!((stepped[j] - right[j]).abs() < 1e-8, "{j}: {}", stepped[j]);
         }
     }
 }

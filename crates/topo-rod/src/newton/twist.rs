@@ -85,6 +85,11 @@ impl NewtonTwist {
         self.viscosity.hold(fixed);
     }
 
+    /// The same with other joints that are [loose](TwistViscosity::loosen).
+    pub(crate) fn loosen(&mut self, seams: &[usize]) {
+        self.viscosity.loosen(seams);
+    }
+
     pub(crate) fn n_factorisations(&self) -> u64 {
         self.viscosity.n_factorisations()
     }
@@ -107,8 +112,8 @@ impl NewtonTwist {
         self.viscosity.prepare(layout, cosine, stiffness)
     }
 
-    /// w ← (M_θ + s H_θ)⁻¹ M_θ w; entries of held edges stay as they are.
-    pub(crate) fn solve(&mut self, w: &mut [f64]) {
+    /// w ← (M_θ + s H_θ)⁻¹ M_θ w, with the turns of loose joints in `joints`; entries of held edges stay as they are.
+    pub(crate) fn solve(&mut self, w: &mut [f64], joints: &mut [f64]) {
         self.work.clear();
         self.work.extend_from_slice(w);
         let right = &mut *w;
@@ -120,17 +125,25 @@ impl NewtonTwist {
             .map(|(j, _)| (j, right[j]))
             .collect();
         right.fill(0.0);
+        let mut loose = joints.iter_mut();
         for chain in self.layout.components() {
             let half = 0.5 / chain.rest_length();
             for i in chain.interior() {
                 let (a, b) = (chain.edge_before(i), i);
-                right[a] += half * (self.work[a] - self.cosine[i] * self.work[b]);
-                right[b] += half * (self.work[b] - self.cosine[i] * self.work[a]);
+                let (before, mut behind) = (self.work[a], self.work[b]);
+                if self.viscosity.is_loose(i)
+                    && let Some(turn) = loose.next()
+                {
+                    behind += *turn;
+                    *turn = half * (behind - self.cosine[i] * before);
+                }
+                right[a] += half * (before - self.cosine[i] * behind);
+                right[b] += half * (behind - self.cosine[i] * before);
             }
         }
         given.iter().for_each(|g| right[g.0] = g.1);
         self.viscosity
-            .solve(&self.layout, &self.cosine, self.stiffness, right);
+            .solve(&self.layout, &self.cosine, self.stiffness, right, joints);
         given.iter().for_each(|g| right[g.0] = g.1);
     }
 }

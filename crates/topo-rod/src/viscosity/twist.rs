@@ -11,6 +11,8 @@ pub struct TwistViscosity {
     diagonal: Vec<usize>,
     next: Vec<usize>,
     fixed: Vec<bool>,
+    /// Vertices at which the turn of two ends against each other is an unknown too.
+    loose: Vec<usize>,
     n_factorisations: u64,
 }
 
@@ -32,8 +34,19 @@ impl TwistViscosity {
             diagonal: Vec::new(),
             next: Vec::new(),
             fixed,
+            loose: Vec::new(),
             n_factorisations: 0,
         }
+    }
+
+    /// The same with the joints at the first vertices `seams` of closed components loose: a torque turns their ends against each other.
+    pub(crate) fn loosen(&mut self, seams: &[usize]) {
+        self.loose = seams.to_vec();
+    }
+
+    /// Whether the joint at vertex `i` is loose.
+    pub(crate) fn is_loose(&self, i: usize) -> bool {
+        self.loose.contains(&i)
     }
 
     /// The same for other edges that are held.
@@ -89,6 +102,12 @@ impl TwistViscosity {
             let half = 0.5 / chain.rest_length();
             for i in chain.interior() {
                 let (a, b) = (chain.edge_before(i), i);
+                if self.loose.contains(&i) {
+                    let coupling = half * cosine[i] + stiffness;
+                    values[self.diagonal[a]] +=
+                        half + stiffness - coupling * coupling / (half + stiffness);
+                    continue;
+                }
                 values[self.diagonal[a]] += half + stiffness;
                 values[self.diagonal[b]] += half + stiffness;
                 if !self.fixed[a] && !self.fixed[b] {
@@ -126,7 +145,23 @@ impl TwistViscosity {
     }
 
     /// Turns torques into rotation rates; entries of held edges come in as their prescribed rate.
-    pub fn solve(&mut self, layout: &Layout, cosine: &[f64], stiffness: f64, w: &mut [f64]) {
+    ///
+    /// At a loose joint the ends turn against each other by φ̇ besides, which is eliminated: with c the cosine, s the stiffness and P the
+    /// torque that its own equation leaves to be balanced,
+    ///
+    /// ```math
+    /// \left(\tfrac{1}{2 l_0} + s\right) (w_0 + \dot\varphi) - \left(\tfrac{c}{2 l_0} + s\right) w_{-1} = P
+    /// ```
+    ///
+    /// `joints` has P of each and becomes φ̇; what is behind them stays.
+    pub fn solve(
+        &mut self,
+        layout: &Layout,
+        cosine: &[f64],
+        stiffness: f64,
+        w: &mut [f64],
+        joints: &mut [f64],
+    ) {
         if self.fixed.iter().any(|&f| f) {
             for (chain, stiffness) in stiffnesses(layout, stiffness) {
                 let half = 0.5 / chain.rest_length();
@@ -139,8 +174,23 @@ impl TwistViscosity {
                 }
             }
         }
+        let loose = |(k, &seam): (usize, &usize)| {
+            let chain = layout.chain_of(seam);
+            let stiffness =
+                stiffness * (layout.components()[0].rest_length() / chain.rest_length());
+            let half = 0.5 / chain.rest_length();
+            let (own, coupling) = (half + stiffness, half * cosine[seam] + stiffness);
+            (k, seam, chain.edge_before(seam), own, coupling)
+        };
+        for (k, seam, before, own, coupling) in self.loose.iter().enumerate().map(loose) {
+            w[seam] -= joints[k];
+            w[before] += coupling / own * joints[k];
+        }
         if let Some(solver) = self.solver.as_mut() {
             solver.solve_in_place(w, 1);
+        }
+        for (k, seam, before, own, coupling) in self.loose.iter().enumerate().map(loose) {
+            joints[k] = (joints[k] + coupling * w[before]) / own - w[seam];
         }
     }
 }

@@ -468,6 +468,14 @@ fn values_out_of_range_are_refused() {
             "[charge.twisting]\nover = 2",
             ["line 3: charge.twisting", "give `twist`"],
         ),
+        (
+            "twist = 1\n[charge.twisting]\nover = 5\ntorque = [[0, 0], [2, 1], [1, 1]]",
+            ["line 6: charge.twisting.torque", "in the order of time"],
+        ),
+        (
+            "twist = 1\n[charge.twisting]\nover = 5\ntorque = { to = 1, over = 0 }",
+            ["line 6: charge.twisting.torque", "a time above zero"],
+        ),
     ]);
 }
 

@@ -97,7 +97,7 @@ impl Setup {
             .with_checkpoint(&folder.join("charge"), interval);
         let charge = ChargeSettings {
             duration: 0.5,
-            twisting: self.twisting,
+            twisting: self.twisting.clone(),
             ..ChargeSettings::default()
         };
         let charged = self.battery().charge(&charge, &mut hooks)?;
@@ -185,12 +185,26 @@ fn law_resumed_rods_end_with_the_same_bits() {
     }
 }
 
-/// A rod twisted in time, which then works on a load: stopped before, while and after it is twisted, and in its discharge.
+/// A rod twisted in time, which then works on a load: stopped before, while and after it is twisted, and in its discharge. Turned at a
+/// constant rate and by a torque; a link, with a natural shape, by a torque too.
 #[test]
 fn law_resumed_work_ends_with_the_same_bits() {
-    for integrator in [IntegratorKind::Ros34pw2, IntegratorKind::Rkc2] {
-        let mut setup = setup(integrator, Some(1.0), true);
-        setup.twisting = Some(Twisting { over: 0.5 });
+    use IntegratorKind::{Rkc2, Ros34pw2};
+    let ramp = || {
+        Some(TimeCourse::Ramp(Ramp {
+            to: 1.0,
+            over: 0.25,
+        }))
+    };
+    for (mut setup, torque) in [
+        (setup(Ros34pw2, Some(1.0), true), None),
+        (setup(Rkc2, Some(1.0), true), None),
+        (setup(Ros34pw2, Some(1.0), true), ramp()),
+        (setup(Rkc2, Some(1.0), true), ramp()),
+        (linked(Ros34pw2, false), ramp()),
+    ] {
+        let what = format!("{:?} {torque:?}", setup.accuracy.integrator);
+        setup.twisting = Some(Twisting { over: 0.5, torque });
         setup.discharge.longest = 1.0;
         setup.discharge.load = Some(EndLoad {
             spring: 1e-3,
@@ -204,12 +218,15 @@ fn law_resumed_work_ends_with_the_same_bits() {
         let begun = |t: f64| charge.3.curve.time().iter().filter(|s| **s < t).count() as u64;
         assert!(charge.4.tied.is_some() && scale > 0.0);
         let [begins, ends] = [begun(0.5 - 1e-9), begun(1.0 - 1e-9)];
+        let corner = begun(0.75 - 1e-9);
         let charge = [
             1,
             begins - 1,
             begins,
             begins + 1,
             begins + 5,
+            corner,
+            corner + 1,
             ends - 1,
             ends,
             ends + 1,
@@ -221,11 +238,7 @@ fn law_resumed_work_ends_with_the_same_bits() {
         for stop in stops.into_iter().chain(discharge) {
             setup.run(stopped.path(), Some(stop)).unwrap();
         }
-        assert_eq!(
-            setup.run(stopped.path(), None).unwrap(),
-            reports,
-            "{integrator:?}"
-        );
+        assert_eq!(setup.run(stopped.path(), None).unwrap(), reports, "{what}");
         assert!(reports[1].contains("peak_power"));
     }
 }
