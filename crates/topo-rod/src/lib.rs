@@ -25,6 +25,7 @@ mod load;
 mod model;
 mod newton;
 mod parameters;
+mod relaxation;
 mod state;
 pub mod viscosity;
 

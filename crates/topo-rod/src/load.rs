@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use topo_core::{in_range, non_negative};
 
 use crate::energy::{Force, Stiffness};
+use crate::relaxation::excess;
 use crate::{Chain, EndCondition, Ends, RodError, RodState};
 
 /// What a load acts between.
@@ -302,16 +303,6 @@ impl Load {
         stiffness.further.sort_by_key(|p| (p.0, p.1));
     }
 
-    /// Resistance of the dashpot to the displacements u and v of a step, per time.
-    pub(crate) fn form(&self, u: &[f64], v: &[f64]) -> f64 {
-        self.form_of(self.relative(u), self.relative(v))
-    }
-
-    /// The same of relative motions of its two ends.
-    pub(crate) fn form_of(&self, u: Vector3<f64>, v: Vector3<f64>) -> f64 {
-        u.dot(&(self.mean_damping() * v))
-    }
-
     /// Relative motion of its two ends in a component-major vector.
     pub(crate) fn relative(&self, u: &[f64]) -> Vector3<f64> {
         self.line.relative(u, self.n_vertices)
@@ -327,9 +318,20 @@ impl Load {
         mean * (now - then)
     }
 
-    /// Energy that the spring has taken up in the last step.
-    pub(crate) fn stored(&self) -> f64 {
-        self.here.energy - self.accepted.energy
+    /// Work on it over the last step: what its spring has taken up and its dashpot dissipates, given the change a of the relative
+    /// rate of its ends and W⁻¹ a.
+    pub(crate) fn work(
+        &self,
+        step: &[f64],
+        dt: f64,
+        [a, smoothed]: [Vector3<f64>; 2],
+        g: Option<f64>,
+    ) -> f64 {
+        let form = |u: Vector3<f64>, v: Vector3<f64>| u.dot(&(self.mean_damping() * v));
+        let moved = self.relative(step);
+        let slow = form(moved, moved);
+        let heat = slow * (1.0 + excess(slow, g, a, smoothed, form)) / dt;
+        heat + self.here.energy - self.accepted.energy
     }
 
     /// What its dashpot resists a held vertex `i` with at the relative velocity of `velocity`; 0 for other vertices.

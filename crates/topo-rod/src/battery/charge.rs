@@ -42,9 +42,9 @@ pub struct Twisting {
     /// Time that the twisting takes.
     #[schemars(extend("x-unit" = "T_0", "exclusiveMinimum" = 0), example = 5.0)]
     pub over: f64,
-    /// Torque that turns the ends, in that which a straight rod of the twist θ' of the case carries, (α/4) θ' h E_b A h: constant, or in
-    /// time from the start of the twisting.
-    #[schemars(extend("x-unit" = "α θ'h/4 E_b A h", "x-default" = "a constant rate"), example = 1.0)]
+    /// Torque that turns the ends, in that which a straight rod of the twist θ' of the case carries: constant, a ramp or a table of times
+    /// from the start of the twisting. They are fused at the turn that they have reached.
+    #[schemars(extend("x-unit" = "(α/4) θ'h E_b A h", "x-default" = "turned at a constant rate", "examples" = [{ "to": 1.0, "over": 5.0 }]))]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub torque: Option<TimeCourse>,
 }

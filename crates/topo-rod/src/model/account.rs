@@ -5,13 +5,14 @@ use topo_core::{Ledger, LinearlyImplicit, Rejection};
 
 use super::RodModel;
 use super::parts::{CHANNELS, LOAD};
-use crate::RodState;
 use crate::drag::DragCorrection;
 use crate::friction::friction_form;
 use crate::guard::RiseBudget;
 use crate::load::LoadCorrection;
 use crate::newton::NewtonTwist;
+use crate::relaxation::excess;
 use crate::viscosity::{TwistViscosity, centreline_form, twist_form};
+use crate::{Layout, RodState};
 
 /// Computational work of a run by component; a component that the scene leaves out stays at zero.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -291,29 +292,39 @@ impl RodModel {
         let factor = 1.0 + excess(slow, g, &a[..], &smoothed[..], centreline);
         self.ledger.dissipate(0, (slow - friction) * factor / dt);
         self.ledger.dissipate(2, friction * factor / dt);
+        let changes = [&a[..], &smoothed[..]];
         if let Some(load) = &self.load {
-            let along = |u: &[f64]| load.relative(u) - turning;
-            let form = |u: Vector3<f64>, v: Vector3<f64>| load.form_of(u, v);
-            let taken = load.form(step, step);
-            let factor = 1.0 + excess(taken, g, along(a), along(&smoothed), form);
-            self.ledger
-                .dissipate(CHANNELS.len(), taken * factor / dt + load.stored());
+            let work = load.work(step, dt, changes.map(|u| load.relative(u) - turning), g);
+            self.ledger.dissipate(CHANNELS.len(), work);
         }
         if self.twist.is_some() {
-            let (old, new) = (&self.accepted.cosine, &self.at.geometry.cosine);
-            let cosine = |i: usize| 0.5 * (old[i] + new[i]);
-            let (motor, n_edges) = (self.motor.as_deref(), self.n_edges);
-            let driven =
-                |u: &[f64], v: &[f64]| motor.map_or(0.0, |motor| motor.form(n_edges, cosine, u, v));
-            let twist = |u: &[f64], v: &[f64]| twist_form(layout, cosine, u, v) + driven(u, v);
-            let turned = 3 * n..self.drives().end;
-            let slow = twist(&step[turned.clone()], &step[turned.clone()]);
-            let factor = 1.0 + excess(slow, g, &a[turned.clone()], &smoothed[turned], twist);
-            self.ledger.dissipate(1, slow * factor / dt);
+            let heat = self.heat_of_twist(layout, step, dt, changes, g);
+            self.ledger.dissipate(1, heat);
         }
         self.smoothed = smoothed;
         self.rate_there = std::mem::replace(&mut self.accepted.rate, rate);
         self.accepted.rate_stamp = solved.then(|| to.stamp());
+    }
+
+    /// What twist viscosity dissipates in a step, given a and W⁻¹ a.
+    fn heat_of_twist(
+        &self,
+        layout: &Layout,
+        step: &[f64],
+        dt: f64,
+        changes: [&[f64]; 2],
+        g: Option<f64>,
+    ) -> f64 {
+        let (old, new) = (&self.accepted.cosine, &self.at.geometry.cosine);
+        let cosine = |i: usize| 0.5 * (old[i] + new[i]);
+        let (motor, n_edges) = (self.motor.as_deref(), self.n_edges);
+        let driven =
+            |u: &[f64], v: &[f64]| motor.map_or(0.0, |motor| motor.form(n_edges, cosine, u, v));
+        let twist = |u: &[f64], v: &[f64]| twist_form(layout, cosine, u, v) + driven(u, v);
+        let turned = 3 * self.n_vertices..self.drives().end;
+        let slow = twist(&step[turned.clone()], &step[turned.clone()]);
+        let [a, smoothed] = changes.map(|u| &u[turned.clone()]);
+        slow * (1.0 + excess(slow, g, a, smoothed, twist)) / dt
     }
 
     /// a ← W⁻¹ a with the Newton matrix of the step, W = 1 + g Z; gives g, or `None` where there is no use of it.
@@ -325,31 +336,3 @@ impl RodModel {
 
 /// Largest g whose fraction is nearer to φ than the bound is.
 const COARSEST_RESOLVENT: f64 = 1.0;
-
-/// φ − 1 in the mean over the modes of a step with the secant form `slow`.
-fn excess<T: Copy>(
-    slow: f64,
-    g: Option<f64>,
-    a: T,
-    smoothed: T,
-    form: impl Fn(T, T) -> f64,
-) -> f64 {
-    if slow <= 0.0 {
-        return 0.0;
-    }
-    let bound = relaxation_factor((form(a, a) / slow).sqrt()) - 1.0;
-    let Some(g) = g else {
-        return bound;
-    };
-    let sum = 6.0 * g * form(a, smoothed) + (1.0 - 6.0 * g) * form(smoothed, smoothed);
-    (sum / (12.0 * slow)).clamp(0.0, bound)
-}
-
-/// (z/2) coth(z/2): mean square of a velocity that decays by e^(−z) over a step, over the square of its mean.
-fn relaxation_factor(z: f64) -> f64 {
-    if z < 1e-3 {
-        1.0 + z * z / 12.0
-    } else {
-        0.5 * z / (0.5 * z).tanh()
-    }
-}

@@ -10,21 +10,15 @@ use crate::load::Load;
 impl LinearlyImplicit for RodModel {
     fn prepare(&mut self, state: &RodState, g_dt: f64) -> Result<(), Rejection> {
         self.expected.look_out(state.stamp());
-        // the order holds for any matrix, so one may serve several steps of about its length
-        let is_stale = |load: &Load| self.newton.is_stale(&load.accepted.damping);
-        let stale = self.load.as_deref().is_some_and(is_stale);
-        if let Some(frozen) = self.frozen.as_mut() {
-            let ratio = g_dt / frozen.g_dt;
-            if frozen.n_uses < self.reuse
-                && self.expected.pairs().is_empty()
-                && !stale
-                && (0.6..=1.3).contains(&ratio)
-            {
-                frozen.n_uses += 1;
-                return Ok(());
-            }
+        if let Some(frozen) = self
+            .frozen
+            .take()
+            .filter(|frozen| self.serves(frozen, g_dt))
+        {
+            let n_uses = frozen.n_uses + 1;
+            self.frozen = Some(Frozen { n_uses, ..frozen });
+            return Ok(());
         }
-        self.frozen = None;
         self.evaluate(state)?;
         self.stiffness
             .reset(self.n_vertices, self.pairs.active().len());
@@ -78,6 +72,17 @@ impl LinearlyImplicit for RodModel {
             newton.solve(turned, behind);
         }
         Ok(())
+    }
+}
+
+impl RodModel {
+    /// Whether a Newton matrix is good for another step: the order holds for any matrix, so one may serve several of about its length.
+    fn serves(&self, frozen: &Frozen, g_dt: f64) -> bool {
+        let is_stale = |load: &Load| self.newton.is_stale(&load.accepted.damping);
+        frozen.n_uses < self.reuse
+            && self.expected.pairs().is_empty()
+            && !self.load.as_deref().is_some_and(is_stale)
+            && (0.6..=1.3).contains(&(g_dt / frozen.g_dt))
     }
 }
 
