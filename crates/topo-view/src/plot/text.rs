@@ -148,11 +148,11 @@ pub fn signed(value: f64) -> String {
     }
 }
 
-/// Tick of a logarithmic axis: plain between 0.01 and 1000, beyond a power of ten where it is one.
+/// Tick of a logarithmic axis: plain between 0.001 and 1000, beyond a power of ten where it is one.
 pub fn log_tick(value: f64) -> String {
     let exponent = value.log10();
-    if (-2.01..3.01).contains(&exponent) {
-        return number(value, 2);
+    if (-3.01..3.01).contains(&exponent) {
+        return number(value, 3);
     }
     if (exponent - exponent.round()).abs() > 1e-6 {
         return significant(value, 1);
@@ -201,8 +201,8 @@ mod tests {
         assert_eq!(signed(1.75), "+1.75");
         assert_eq!([fixed(-0.0004, 3), fixed(-1.5, 2)], ["0.000", "−1.50"]);
         assert_eq!(
-            [0.1, 1e-5, 0.005, 2e-5].map(log_tick),
-            ["0.1", "10⁻⁵", "0.005", "2·10⁻⁵"]
+            [0.1, 1e-5, 0.001, 0.005, 1000.0, 2e-5].map(log_tick),
+            ["0.1", "10⁻⁵", "0.001", "0.005", "1000", "2·10⁻⁵"]
         );
     }
 }
