@@ -191,10 +191,10 @@ fn draw_bands(
     }
 }
 
-/// The name of a curve stands by its fall through 0.62 (the plain one) or 0.34.
+/// The name of a curve stands by its fall through 0.88 (the plain one, before it passes other knot types) or 0.34.
 fn name_curve(canvas: &mut Canvas, panel: &Panel, shown: &Shown<'_>, first: f64) {
     let ink = shown.ink;
-    let level = if ink == INK { 0.62 } else { 0.34 };
+    let level = if ink == INK { 0.88 } else { 0.34 };
     let beside = shown.curve.iter().find(|p| p.1 < level && p.0 >= first);
     if let (Some((x, y)), Some(c)) = (beside, shown.case) {
         let [px, py] = panel.place(*x, *y);
