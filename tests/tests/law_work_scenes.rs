@@ -155,6 +155,40 @@ fn law_a_scene_pulls_an_open_curve() {
     assert!(column(&columns(folder.path(), row, "series.csv"), "grip1_fx").is_none());
 }
 
+/// An open curve that is held is cut between its grips, at given places and where it stores most: two fibres in the tables, without a
+/// knot type, the grips of their outer ends with it.
+#[test]
+fn law_a_scene_cuts_an_open_curve() {
+    let vertices = curves::overhand(120, 4.0);
+    let lines = vertices.vertices().iter();
+    let lines = lines.map(|v| format!("{},{},{}\n", v.x, v.y, v.z));
+    let curve: String = std::iter::once("x,y,z\n".to_owned()).chain(lines).collect();
+    let rod = "[rod]\ncurve = \"overhand.csv\"\nslenderness = 60\n";
+    let pull = "[pull]\nduration = 1\noutputs = 2\ngrips = [{ condition = \"clamped\" }, { condition = \"clamped\" }]\n";
+    let ends = "[discharge.ends]\nconditions = [\"clamped\", \"clamped\"]\n";
+    for (cuts, places) in [("[0.4, 0.5]", 2), ("\"all:2\"", 2), ("\"tension\"", 1)] {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("overhand.csv"), &curve).unwrap();
+        let discharge = format!("[discharge]\ncuts = {cuts}\nlongest = 2.0\n{ends}");
+        let text = format!("{rod}{QUICK}{pull}{discharge}{ACCURACY}");
+        let run = run(&text, folder.path());
+        assert_eq!(run.rows.len(), places);
+        let row = &run.rows[0];
+        assert!(
+            (0.1..0.9).contains(&row.cut) && row.t_untie.is_none(),
+            "{}",
+            row.cut
+        );
+        let series = columns(folder.path(), row, "series.csv");
+        let last = |name: &str| column(&series, name).unwrap().last().unwrap().clone();
+        assert_eq!(last("knot"), "");
+        assert!(!last("grip0_fx").is_empty() && !last("grip1_fx").is_empty());
+        let shapes = columns(folder.path(), row, "snapshots.csv");
+        let components = column(&shapes, "component").unwrap();
+        assert!(["1", "2"].iter().all(|c| components.iter().any(|x| x == c)));
+    }
+}
+
 /// What cannot be is refused with file, line, key, value and remedy.
 #[test]
 fn law_pulls_that_cannot_be_are_refused() {
@@ -186,7 +220,15 @@ fn law_pulls_that_cannot_be_are_refused() {
         ),
         (
             grips("{}") + "[charge]\nduration = 1\n",
-            ["charge.duration = 1", "neither charged nor cut"],
+            ["charge.duration = 1", "pulled, not charged"],
+        ),
+        (
+            grips("{}") + "[discharge]\ncuts = [0.5, 0.999]\n",
+            ["line 7: discharge.cuts", "at an end of the open fibre"],
+        ),
+        (
+            grips("{}") + "[discharge]\ncuts = 0.5\n[discharge.load]\ndashpot = 1\n",
+            ["line 8: discharge.load", "four ends"],
         ),
         (
             "[rod]\nknot = \"3_1\"\n[pull]\nduration = 1\ngrips = [{}, {}]\n".to_owned(),

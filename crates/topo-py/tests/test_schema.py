@@ -15,6 +15,7 @@ BASES = {"rod": {"rod": {"knot": "3_1"}}, "nematic": {"nematic": {"field": {"vec
 
 # what a table needs besides the key of the example
 NEEDED = {
+    "charge.twisting": {"charge": {"twisting": {"over": 5.0}}},
     "charge.break": {"charge": {"break": {"criterion": "energy", "threshold": 1.0}}},
     "si": {"si": {"radius": 1e-3, "bending_modulus": 1e7, "viscosity": 1e4}},
     "pull": {"pull": {"grips": [{}, {}], "duration": 2.0}},

@@ -106,6 +106,12 @@ pub enum RodError {
     /// A checkpoint could not be written or read.
     #[error(transparent)]
     File(#[from] FileError),
+    /// The cut is at an end of an open rod.
+    #[error("cut at s/L = {at} is at an end of the open rod: cut two edges from it at least")]
+    CutAtEnd {
+        /// Position requested, s/L.
+        at: f64,
+    },
     /// The cut is outside of the rod.
     #[error("cut at s/L = {at} is not on the rod: use a number in [0, 1)")]
     CutSite {

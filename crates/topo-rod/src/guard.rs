@@ -132,6 +132,10 @@ pub(crate) fn certify(
     for c in 0..from.n_components() {
         certify_neighbours(from, step, limit, pairs, c)?;
     }
+    let first_of_two = pairs.first_of_two();
+    if let Some(c) = first_of_two {
+        certify_across(from, step, limit, pairs, c)?;
+    }
     // strands in reach of each other: edges around each listed pair of vertices
     if !pairs.vertices_within(limit, x, near) {
         // so coarse a rod that the list is shorter than its edges
@@ -142,7 +146,9 @@ pub(crate) fn certify(
             for j in edges().filter(|&j| j > i) {
                 let next = j == i + 1 && chain.edges().contains(&j);
                 let around = joined && i == chain.first() && j == seam;
-                if !(next || around) {
+                let across =
+                    i == seam && j == seam + 2 && first_of_two == Some(from.component_of(i));
+                if !(next || around || across) {
                     certify_pair(from, step, limit, i, j)?;
                 }
             }
@@ -184,6 +190,26 @@ fn certify_neighbours(
                 certify_pair(from, step, limit, i, j)?;
             } else if joined {
                 certify_pair(from, step, limit, i, j - n_edges)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The same for neighbours on the two sides of a cut between component `c` and the next one, but for the two that end there.
+fn certify_across(
+    from: &RodState,
+    step: &[f64],
+    limit: f64,
+    pairs: &ContactPairs,
+    c: usize,
+) -> Result<(), Rejection> {
+    let [before, after] = [c, c + 1].map(|c| from.components()[c]);
+    let width = (pairs.window().outer() / before.rest_length()).ceil() as usize + 1;
+    for (a, i) in before.edges().rev().enumerate().take(width) {
+        for (b, j) in after.edges().enumerate().take(width - a) {
+            if a + b > 0 {
+                certify_pair(from, step, limit, i, j)?;
             }
         }
     }

@@ -5,6 +5,8 @@ mod encoding;
 use std::ops::Range;
 use std::sync::Arc;
 
+use serde::{Deserialize, Serialize};
+
 /// One component: a closed or open chain of consecutive vertices, and the natural length of its edges.
 ///
 /// Edge j starts at vertex j. Indices are those of the whole state, so that the vertices of a single component begin at 0.
@@ -119,12 +121,38 @@ impl Chain {
         Self { first, ..self }
     }
 
+    /// The two components of an open one that is cut at `vertex`.
+    pub(crate) fn halves(self, vertex: usize) -> [Self; 2] {
+        [vertex - self.first, self.last() - vertex].map(|n_edges| Self {
+            n_vertices: n_edges + 1,
+            ..self
+        })
+    }
+
     /// The same component cut open: one vertex more.
     pub(crate) fn opened(self) -> Self {
         Self {
             n_vertices: self.n_vertices + 1,
             closed: false,
             ..self
+        }
+    }
+}
+
+/// The two ends that a cut has made, in one place at first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Tips {
+    /// Those of this component, which was closed.
+    Of(usize),
+    /// The last of this component and the first of the next one, which were one open component.
+    Between(usize),
+}
+
+impl Tips {
+    /// The component that was cut, or the first of the two that it is now.
+    pub fn component(self) -> usize {
+        match self {
+            Self::Of(c) | Self::Between(c) => c,
         }
     }
 }

@@ -45,7 +45,7 @@ pub use ends::{EndCondition, EndMotion, Ends, Grip, Ramp, RodEnds, TimeCourse};
 pub use error::RodError;
 pub use geometry::Geometry;
 pub use guard::Guards;
-pub use layout::{Chain, Layout};
+pub use layout::{Chain, Layout, Tips};
 pub use load::{EndLoad, LoadPlace};
 pub use model::{GripForce, RodModel, WorkAccount};
 pub use nalgebra::{Matrix3, Vector3};

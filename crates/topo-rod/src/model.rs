@@ -30,7 +30,7 @@ use crate::load::{EndLoad, Load};
 use crate::newton::{NewtonMatrix, NewtonTwist};
 use crate::viscosity::{CentrelineViscosity, TwistViscosity};
 use crate::{
-    Accuracy, Chain, Ends, Geometry, Guards, RodEnds, RodError, RodParameters, RodState, Tube,
+    Accuracy, Chain, Ends, Geometry, Guards, RodEnds, RodError, RodParameters, RodState, Tips, Tube,
 };
 use approaching::ApproachingPairs;
 use motor::Motor;
@@ -286,9 +286,9 @@ impl RodModel {
         }
     }
 
-    /// Names the component that a cut has opened, of several: [`set_cyclic`](Self::set_cyclic) is about its ends.
-    pub fn set_joined(&mut self, component: Option<usize>) {
-        self.pairs.set_joined(component);
+    /// Names the ends that a cut has made, of several components: [`set_cyclic`](Self::set_cyclic) is about them.
+    pub fn set_joined(&mut self, tips: Option<Tips>) {
+        self.pairs.set_joined(tips);
         self.forget();
     }
 

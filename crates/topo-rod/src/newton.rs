@@ -65,6 +65,9 @@ impl FactorMemory {
     }
 }
 
+/// Change of the resistance of a dashpot, in η/h, that is none: the softest rods resist with η/L.
+const LEAST_CHANGE: f64 = 1e-9;
+
 impl NewtonMatrix {
     /// What it remembers, with its factor if that is in use.
     pub(crate) fn memory(&self, is_in_use: bool) -> NewtonMemory {
@@ -153,7 +156,8 @@ impl NewtonMatrix {
     /// Whether the dashpot of a load resists in another way by now than in the matrix, because its line has turned. A strong dashpot
     /// along a line that has turned by a few degrees lets the ends drift by many times the tolerance.
     pub(crate) fn is_stale(&self, damping: &Matrix3<f64>) -> bool {
-        self.load.is_some_and(|(_, own)| own != *damping)
+        self.load
+            .is_some_and(|(_, own)| (own - damping).norm() > LEAST_CHANGE)
     }
 
     /// Bytes held for further components.

@@ -255,24 +255,21 @@ impl RodState {
         self.components().get(c).ok_or(missing)
     }
 
-    /// The rods with the component cut that has `vertex`: the vertex is doubled, its twist dropped, and the numbering of this component
-    /// starts there. Vertices of components behind it move up by one.
+    /// The rods with the component cut that has `vertex`: the vertex is doubled, its twist dropped, and the numbering of a closed
+    /// component starts there, while an open one becomes two. Vertices behind move up by one.
     ///
     /// # Errors
-    /// The component must be closed and the vertex exist.
+    /// The vertex must exist and, of an open component, leave two edges at least on either side.
     pub fn cut_at(&self, vertex: usize) -> Result<Self, RodError> {
         let n_vertices = self.vertices.len();
         let cut = *self.chain_of(vertex);
-        if !cut.is_closed() {
-            return Err(RodError::WrongTopology {
-                operation: "a cut",
-                needed: "a closed",
-            });
-        }
         if vertex >= n_vertices {
             return Err(RodError::CutSite {
                 at: vertex as f64 / n_vertices as f64,
             });
+        }
+        if !cut.is_closed() {
+            return self.halved_at(vertex, &cut);
         }
         let (first, n, behind) = (cut.first(), cut.n_vertices(), cut.vertices().end);
         let opened = (0..=n).map(|k| first + (vertex - first + k) % n);
@@ -296,6 +293,39 @@ impl RodState {
         Ok(Self {
             vertices: places.iter().map(|&place| self.vertices[place]).collect(),
             twists: places.iter().enumerate().map(twist).collect(),
+            joined: Joined {
+                layout: Layout::of(chains),
+                material,
+            },
+            stamp: self.stamp + 1,
+            clock: 0.0,
+            turns: Vec::new(),
+        })
+    }
+
+    /// The rods with the open component `cut` parted at `vertex`.
+    fn halved_at(&self, vertex: usize, cut: &Chain) -> Result<Self, RodError> {
+        if !(cut.first() + 2..cut.last() - 1).contains(&vertex) {
+            return Err(RodError::CutAtEnd {
+                at: (vertex - cut.first()) as f64 / cut.n_edges() as f64,
+            });
+        }
+        let places: Vec<usize> = (0..=vertex).chain(vertex..self.vertices.len()).collect();
+        let is_end = |k: usize| k == vertex || k == vertex + 1;
+        let mut twists: Vec<f64> = places.iter().map(|&place| self.twists[place]).collect();
+        twists[vertex..=vertex + 1].fill(0.0);
+        let chains = self.components().iter();
+        let chains = chains.flat_map(|chain| {
+            let halves = (chain == cut).then(|| chain.halves(vertex));
+            halves.map_or_else(|| vec![*chain], Vec::from)
+        });
+        let material = self.joined.material.as_ref().map(|material| {
+            let director = Geometry::new(self).director[vertex];
+            Box::new(material.halved(&places, is_end, (self.component_of(vertex), director)))
+        });
+        Ok(Self {
+            vertices: places.iter().map(|&place| self.vertices[place]).collect(),
+            twists,
             joined: Joined {
                 layout: Layout::of(chains),
                 material,

@@ -5,6 +5,7 @@ use topo_knots::{KnotError, KnotTable};
 use topo_rod::{ChargedRod, CutSite, Discharge, DischargeSettings, RodError, RunHooks};
 
 use super::case::ElasticCase;
+use super::choices::Cuts;
 use super::scene::ElasticScene;
 use super::tied::Start;
 use crate::LabError;
@@ -51,9 +52,9 @@ impl CaseInputs<'_> {
             load: self.case.load,
             ..*settings
         };
-        let opened = match self.scene.pull {
-            Some(_) => charged.let_go(),
-            None => charged.cut(site),
+        let opened = match self.scene.cuts {
+            Cuts::LetGo => charged.let_go(),
+            _ => charged.cut(site),
         };
         opened
             .and_then(|cut| cut.discharge(&settings, hooks))

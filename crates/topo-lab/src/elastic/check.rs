@@ -7,6 +7,7 @@ use topo_knots::KnotTable;
 use topo_rod::{IntegratorKind, Reading, RodError};
 
 use super::case::ElasticCase;
+use super::choices::Cuts;
 use super::cost::BYTES;
 use super::keys::{EDGES, ROD_KEYS};
 use super::rest::{RestKeys, TWIST};
@@ -195,13 +196,26 @@ fn check_cuts(
     case: &ElasticCase,
     document: &Document<'_>,
 ) -> Result<(), LabError> {
-    match scene.cuts.clash(case.rod.n_edges) {
-        Some(remedy) => {
-            let cuts = String::from(scene.cuts.clone());
-            Err(document.wrong("discharge.cuts", cuts, remedy))
-        }
-        None => Ok(()),
+    let wrong = |remedy: String| {
+        let cuts = String::from(scene.cuts.clone());
+        Err(document.wrong("discharge.cuts", cuts, remedy))
+    };
+    if scene.cuts == Cuts::LetGo && scene.pull.is_none() {
+        return wrong(
+            "only an open fibre that is pulled can be let go: say where to cut".to_owned(),
+        );
     }
+    if let (Cuts::At(places), Some(_)) = (&scene.cuts, &scene.pull) {
+        let (edges, least) = (case.rod.n_edges as f64, 2.0);
+        let inside = |at: &f64| (least..=edges - least).contains(&(at * edges).round());
+        if let Some(at) = places.iter().find(|at| !inside(at)) {
+            let [from, to] = [least / edges, 1.0 - least / edges];
+            return wrong(format!(
+                "{at} is at an end of the open fibre: places from {from} to {to} are on it"
+            ));
+        }
+    }
+    scene.cuts.clash(case.rod.n_edges).map_or(Ok(()), wrong)
 }
 
 fn check_load(
@@ -209,6 +223,12 @@ fn check_load(
     case: &ElasticCase,
     document: &Document<'_>,
 ) -> Result<(), LabError> {
+    if case.load.is_some() && scene.pull.is_some() && scene.cuts != Cuts::LetGo {
+        let key = "discharge.load";
+        let remedy =
+            "an open fibre that is cut has four ends: leave the load or `discharge.cuts` out";
+        return Err(document.wrong(key, document.written(key), remedy));
+    }
     let checked = case.load.map(|load| load.checked(&scene.discharge.ends));
     checked.map_or(Ok(()), |checked| {
         checked.map(drop).map_err(|e| refused(document, e))
@@ -333,16 +353,11 @@ pub(super) fn idle(scene: &ElasticScene) -> Vec<(&'static str, &'static str)> {
         "charge.twisting",
         "it changes nothing: no twist is modelled; give `twist`, or leave it out",
     );
-    for key in [
-        "charge.duration",
-        "charge.twisting",
-        "charge.break",
-        "discharge.cuts",
-    ] {
+    for key in ["charge.duration", "charge.twisting", "charge.break"] {
         unless(
             scene.pull.is_none(),
             key,
-            "it changes nothing: the fibre is open and pulled, neither charged nor cut; leave it out",
+            "it changes nothing: the fibre is open and pulled, not charged; leave it out",
         );
     }
     let key = "rod.seed";

@@ -36,6 +36,8 @@ pub enum Cuts {
     All(usize),
     /// The vertices nearest to these places, s/L in [0, 1).
     At(Vec<f64>),
+    /// None: an open fibre is let go.
+    LetGo,
 }
 
 impl Default for Cuts {
@@ -48,6 +50,7 @@ impl Default for Cuts {
 const ARGMAX: &str = "argmax";
 const NEAR_TIES: &str = "near-ties";
 const CRITERIA: &str = "criteria";
+const LET_GO: &str = "let-go";
 
 /// The criterion of a name.
 fn criterion(name: &str) -> Option<Criterion> {
@@ -73,6 +76,7 @@ impl TryFrom<String> for Cuts {
             ARGMAX => Some(Self::Largest(Criterion::Energy)),
             NEAR_TIES => Some(Self::NearTies(Criterion::Energy)),
             CRITERIA => Some(Self::Criteria),
+            LET_GO => Some(Self::LetGo),
             other => match other.split_once(':') {
                 Some(("all", k)) => all(k),
                 Some((NEAR_TIES, of)) => criterion(of).map(Self::NearTies),
@@ -80,7 +84,7 @@ impl TryFrom<String> for Cuts {
             },
         };
         let names = Criterion::ALL.map(|c| format!("\"{c}\"")).join(", ");
-        found.ok_or_else(|| format!("write {names}, \"argmax\" (of the energy), \"near-ties\", \"near-ties:tension\" and the like, \"criteria\", \"all:K\" with K from 1 to 10000, or places s/L from 0 to below 1"))
+        found.ok_or_else(|| format!("write {names}, \"argmax\" (of the energy), \"near-ties\", \"near-ties:tension\" and the like, \"criteria\", \"all:K\" with K from 1 to 10000, places s/L from 0 to below 1, or \"let-go\" of an open fibre"))
     }
 }
 
@@ -92,6 +96,7 @@ impl From<Cuts> for String {
             Cuts::NearTies(Criterion::Energy) => NEAR_TIES.into(),
             Cuts::NearTies(other) => format!("{NEAR_TIES}:{other}"),
             Cuts::Criteria => CRITERIA.into(),
+            Cuts::LetGo => LET_GO.into(),
             Cuts::All(k) => format!("all:{k}"),
             Cuts::At(at) => at.iter().map(f64::to_string).collect::<Vec<_>>().join(","),
         }
@@ -125,7 +130,7 @@ impl Cuts {
     /// Why these cuts cannot be made in a rod of `n_edges` edges, if they cannot: two fall on one vertex.
     pub(super) fn clash(&self, n_edges: usize) -> Option<String> {
         match self {
-            Self::Largest(_) | Self::NearTies(_) | Self::Criteria => None,
+            Self::Largest(_) | Self::NearTies(_) | Self::Criteria | Self::LetGo => None,
             Self::All(k) => (*k > n_edges).then(|| {
                 format!("a rod of {n_edges} edges has fewer vertices: ask for at most as many cuts")
             }),
@@ -159,7 +164,7 @@ impl<'de> Deserialize<'de> for Cuts {
             type Value = Cuts;
 
             fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("\"argmax\", \"near-ties\", a criterion such as \"von-mises\", \"criteria\", \"all:K\", a place s/L or a list of places")
+                f.write_str("\"argmax\", \"near-ties\", a criterion such as \"von-mises\", \"criteria\", \"all:K\", a place s/L, a list of places or \"let-go\"")
             }
 
             fn visit_str<E: de::Error>(self, text: &str) -> Result<Cuts, E> {
@@ -207,6 +212,7 @@ impl JsonSchema for Cuts {
             { "type": "string", "pattern": "^near-ties:(energy|curvature|tension|von-mises)$", "x-form": "\"near-ties:tension\" and the like for the near ties of another criterion" },
             { "const": CRITERIA, "description": "The near ties of the energy density and the maxima of the three others, each site once." },
             { "type": "string", "pattern": "^all:[0-9]+$", "x-form": "\"all:K\" for K evenly spaced cuts" },
+            { "const": LET_GO, "description": "No cut: an open fibre is let go." },
             place(),
             { "type": "array", "items": place(), "minItems": 1, "maxItems": MOST_CUTS },
         ] })

@@ -68,7 +68,7 @@ fn cuts(scene: &ElasticScene, known: Option<usize>) -> f64 {
     match (known, &scene.cuts) {
         (Some(n), _) => n as f64,
         _ if scene.charge.breaking.is_some() => 1.0,
-        (None, Cuts::Largest(_)) => 1.0,
+        (None, Cuts::Largest(_) | Cuts::LetGo) => 1.0,
         (None, Cuts::NearTies(_)) => MEAN_NEAR_TIES,
         (None, Cuts::Criteria) => MEAN_CRITERIA,
         (None, Cuts::All(k)) => *k as f64,

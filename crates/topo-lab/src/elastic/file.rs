@@ -112,7 +112,7 @@ struct RodTable {
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 struct DischargeTable {
-    /// Where the fibre is cut: places s/L, or a rule that finds them.
+    /// Where the fibre is cut: places s/L, or a rule that finds them. One that is open and pulled is let go unless this is given.
     #[schemars(extend("x-unit" = "s/L", "x-default" = by_preset(|p| String::from(p.cuts()))), example = "all:8")]
     cuts: Option<Cuts>,
     /// Share of the elastic energy whose release ends the run.
@@ -277,6 +277,7 @@ impl File {
             .rod
             .rest
             .map(|table| RestKeys::new(table, beside.clone()));
+        let is_pulled = self.pull.is_some();
         Ok(ElasticScene {
             folder: folder_of(path)?,
             knots,
@@ -297,7 +298,11 @@ impl File {
                 duration: pull.duration,
                 outputs: pull.outputs,
             }),
-            cuts: run.cuts.unwrap_or(standard.cuts),
+            cuts: run.cuts.unwrap_or(if is_pulled {
+                Cuts::LetGo
+            } else {
+                standard.cuts
+            }),
             discharge: DischargeSettings {
                 until_released: run.until_released.unwrap_or(discharge.until_released),
                 longest: run.longest.unwrap_or(discharge.longest),

@@ -39,10 +39,6 @@ impl Chosen {
 /// Where the scene cuts the rod; nowhere if it should have broken by itself and did not.
 pub(super) fn sites(inputs: &CaseInputs<'_>, charged: &ChargedRod) -> Vec<Chosen> {
     let CaseInputs { scene, case, .. } = *inputs;
-    if scene.pull.is_some() {
-        // its ends are there
-        return vec![Chosen::given(&0.0)];
-    }
     if let Some(fixed) = &scene.fixed_cuts {
         let places = fixed.get(&case.state());
         return places.into_iter().flatten().map(Chosen::given).collect();
@@ -68,9 +64,18 @@ pub(super) fn sites(inputs: &CaseInputs<'_>, charged: &ChargedRod) -> Vec<Chosen
             let ties = within(Criterion::Energy, NEAR_TIE).into_iter();
             agreeing(ties.chain(largest))
         }
-        Cuts::All(k) => (0..*k)
-            .map(|i| Chosen::given(&(i as f64 / *k as f64)))
-            .collect(),
+        Cuts::All(k) => {
+            // an open fibre is not cut at its ends
+            let first = if charged.state().is_closed() {
+                0.0
+            } else {
+                0.5
+            };
+            let places = (0..*k).map(|i| (i as f64 + first) / *k as f64);
+            places.map(|place| Chosen::given(&place)).collect()
+        }
+        // its ends are there
+        Cuts::LetGo => vec![Chosen::given(&0.0)],
         Cuts::At(places) => places.iter().map(Chosen::given).collect(),
     }
 }

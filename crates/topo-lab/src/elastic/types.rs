@@ -3,7 +3,7 @@
 use topo_analysis::Timeline;
 use topo_core::Vector3;
 use topo_knots::LinkTable;
-use topo_rod::{Discharge, RodSample};
+use topo_rod::{Discharge, RodSample, Tips};
 
 use super::case_run::CaseInputs;
 use crate::LabError;
@@ -14,6 +14,10 @@ pub(super) fn timeline(
     inputs: &CaseInputs<'_>,
     discharge: &Discharge,
 ) -> Result<Timeline, LabError> {
+    if let Some(Tips::Between(_)) = discharge.tips {
+        // the halves of an open fibre are no knot
+        return Ok(Timeline::default());
+    }
     let (scene, seed) = (inputs.scene, inputs.case.seed);
     let samples = &discharge.record.samples;
     if inputs.case.n_components() > 1 {

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::{ChargedRod, Criterion, RodError, RodState};
+use crate::{Chain, ChargedRod, Criterion, RodError, RodState, Tips};
 
 /// How the site of a cut is chosen.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -47,24 +47,35 @@ fn is_first(component: &usize) -> bool {
 /// The maximum is often nearly degenerate, and the discharge depends on which one is cut; these are the sites that a small
 /// imperfection of a real fibre would choose among. Maxima closer than π h to a larger one count as part of it.
 pub fn cut_candidates(smoothed: &[f64], rest_length: f64, share: f64) -> Vec<CutCandidate> {
+    peaks_of(smoothed, rest_length, share, true)
+}
+
+/// The same of a rod that may be open: at no end of it.
+fn peaks_of(smoothed: &[f64], rest_length: f64, share: f64, closed: bool) -> Vec<CutCandidate> {
     let n = smoothed.len();
     let peak =
         |i: usize| smoothed[i] >= smoothed[(i + n - 1) % n] && smoothed[i] > smoothed[(i + 1) % n];
-    let mut peaks: Vec<usize> = (0..n).filter(|&i| peak(i)).collect();
+    let sites = if closed { 0..n } else { 2..n.saturating_sub(2) };
+    let mut peaks: Vec<usize> = sites.clone().filter(|&i| peak(i)).collect();
     if peaks.is_empty() {
-        // a constant density, as of a circle: any site is as good
-        peaks.push(0);
+        // a constant density, as of a circle: any site is as good; or one that falls all along
+        let largest = sites.max_by(|&a, &b| smoothed[a].total_cmp(&smoothed[b]).then(b.cmp(&a)));
+        peaks.push(largest.unwrap_or(0));
     }
+    let n_edges = if closed { n } else { n - 1 };
     peaks.sort_by(|&a, &b| smoothed[b].total_cmp(&smoothed[a]).then(a.cmp(&b)));
     let largest = smoothed[peaks[0]];
     let flank = std::f64::consts::PI / rest_length;
     let mut kept: Vec<CutCandidate> = Vec::new();
     for i in peaks {
-        let apart = |j: usize| i.abs_diff(j).min(n - i.abs_diff(j)) as f64;
+        let apart = |j: usize| match closed {
+            true => i.abs_diff(j).min(n - i.abs_diff(j)) as f64,
+            false => i.abs_diff(j) as f64,
+        };
         if smoothed[i] >= (1.0 - share) * largest && kept.iter().all(|c| apart(c.vertex) >= flank) {
             kept.push(CutCandidate {
                 vertex: i,
-                at: i as f64 / n as f64,
+                at: i as f64 / n_edges as f64,
                 component: 0,
                 density: smoothed[i],
             });
@@ -73,12 +84,15 @@ pub fn cut_candidates(smoothed: &[f64], rest_length: f64, share: f64) -> Vec<Cut
     kept
 }
 
-/// As [`cut_candidates`], of all closed components of `state` together, with its smoothed density.
+/// As [`cut_candidates`], of all closed components of `state` together, with its smoothed density; of open ones where none is closed.
 pub(super) fn candidates_of(state: &RodState, smoothed: &[f64], share: f64) -> Vec<CutCandidate> {
     let mut all: Vec<CutCandidate> = Vec::new();
+    let some_closed = state.components().iter().any(Chain::is_closed);
     for (component, chain) in state.components().iter().enumerate() {
-        if chain.is_closed() {
-            let own = cut_candidates(&smoothed[chain.vertices()], chain.rest_length(), share);
+        let closed = chain.is_closed();
+        if closed == some_closed {
+            let own = &smoothed[chain.vertices()];
+            let own = peaks_of(own, chain.rest_length(), share, closed);
             all.extend(own.into_iter().map(|found| CutCandidate {
                 vertex: chain.first() + found.vertex,
                 component,
@@ -105,27 +119,34 @@ pub struct CutRod {
     pub at: f64,
     /// The component that was opened, from 0.
     pub component: usize,
+    /// The ends that the cut made; none where an open rod was let go.
+    pub tips: Option<Tips>,
 }
 
 impl CutRod {
-    /// The charged rod with a component cut at s/L = `at`.
+    /// The charged rod with a component cut at s/L = `at`; an open one into two, of two edges at least.
     ///
     /// # Errors
-    /// The component must exist and be closed, and `at` be in [0, 1).
+    /// The component must exist, and `at` be in [0, 1), and not at an end of an open one.
     pub(crate) fn new(charged: &ChargedRod, component: usize, at: f64) -> Result<Self, RodError> {
         if !(0.0..1.0).contains(&at) {
             return Err(RodError::CutSite { at });
         }
         let closed = charged.state();
         let chain = closed.chain(component)?;
-        let n = chain.n_vertices();
-        let vertex = (at * n as f64).round() as usize % n;
+        let n = chain.n_edges();
+        let nearest = (at * n as f64).round() as usize;
+        let (vertex, tips) = match chain.is_closed() {
+            true => (nearest % n, Tips::Of(component)),
+            false => (nearest, Tips::Between(component)),
+        };
         Ok(Self {
             charged: charged.clone(),
             state: closed.cut_at(chain.first() + vertex)?,
             vertex: chain.first() + vertex,
             at: vertex as f64 / n as f64,
             component,
+            tips: Some(tips),
         })
     }
 }

@@ -8,7 +8,7 @@ use super::cut::CutRod;
 use super::hooks::RunHooks;
 use super::phase::{Course, Finished, RodPhaseRun};
 use super::record::{Recorder, RunRecord, Scales};
-use crate::{EndLoad, Ends, RodEnds, RodError};
+use crate::{EndLoad, Ends, RodEnds, RodError, Tips};
 
 /// How far a discharge is followed and how often it is sampled.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -75,6 +75,8 @@ pub struct Discharge {
     pub at: f64,
     /// The component that was cut, from 0.
     pub component: usize,
+    /// The ends that the cut made; none where an open rod was let go.
+    pub tips: Option<Tips>,
     /// Energy per part that the cut itself removed (contact included), in E_0.
     pub removed: f64,
     /// Elastic energy just before the cut, in E_0: released shares count from it, and what the cut removes counts as released
@@ -102,6 +104,19 @@ impl Discharge {
 }
 
 impl CutRod {
+    /// The ends of a discharge on the open components that have them: of an open rod that was cut, the outer end of each half.
+    fn placed(&self, ends: Ends) -> RodEnds {
+        let one = |end: usize| {
+            let mut one = Ends::default();
+            (one.conditions[end], one.motions[end]) = (ends.conditions[end], ends.motions[end]);
+            one
+        };
+        RodEnds::Each(match self.tips {
+            Some(Tips::Between(c)) => vec![(c, one(0)), (c + 1, one(1))],
+            _ => vec![(self.component, ends)],
+        })
+    }
+
     /// Releases the open rod and follows it.
     ///
     /// # Errors
@@ -115,14 +130,18 @@ impl CutRod {
         let has_twist = battery.parameters().twist.is_some();
         settings.checked(has_twist)?;
         let state = self.state.clone();
-        let mut model =
-            battery.model(&state, RodEnds::Each(vec![(self.component, settings.ends)]))?;
+        let mut model = battery.model(&state, self.placed(settings.ends))?;
         if let Some(load) = settings.load {
+            if let Some(Tips::Between(_)) = self.tips {
+                return Err(RodError::Load {
+                    key: "discharge.load",
+                    reason: "a fibre that was open has four ends when it is cut: leave the load or the cut out",
+                });
+            }
             model = model.with_load(load, self.component, &state)?;
         }
-        let is_cut = self.charged.state().chain(self.component)?.is_closed();
-        if is_cut {
-            model.set_joined(Some(self.component));
+        if self.tips.is_some() {
+            model.set_joined(self.tips);
             model.set_cyclic(true);
         }
         let parts = model.parts().clone();
@@ -132,22 +151,20 @@ impl CutRod {
         let scales = Scales::of(&state);
         let opened = model.account().stored_total();
         let after_cut = parts.elastic_of(model.account());
-        let removed = if is_cut { closed - opened } else { 0.0 };
-        if is_cut {
+        let removed = self.tips.map_or(0.0, |_| closed - opened);
+        if self.tips.is_some() {
             model.record_cut(closed, removed);
         }
         let outputs = Schedule::log_spaced(
             settings.first_output * scales.time,
             settings.outputs_per_decade,
         )?;
-        let mut recorder = Recorder::new(scales, battery.tube(), has_twist, &parts, outputs);
-        if is_cut {
-            recorder = recorder.of_cut(self.component);
-        }
+        let recorder = Recorder::new(scales, battery.tube(), has_twist, &parts, outputs);
+        let recorder = recorder.of_cut(self.tips);
         let course = Course {
             phase: Phase::Discharge,
             until: settings.longest * scales.time,
-            opened: is_cut.then_some(self.component),
+            opened: self.tips,
             release: Some([after_cut, (1.0 - settings.until_released) * after_cut]),
             breaking: None,
         };
@@ -162,6 +179,7 @@ impl CutRod {
         Ok(Discharge {
             at: self.at,
             component: self.component,
+            tips: self.tips,
             removed: removed / scales.energy,
             start: start / scales.energy,
             after_cut: after_cut / scales.energy,

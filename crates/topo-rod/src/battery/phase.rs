@@ -9,7 +9,7 @@ use super::record::{Recorder, RunRecord, Seen};
 use super::simulation::{RodSimulation, control_of};
 use super::tips::tips_have_parted;
 use crate::model::ModelMemory;
-use crate::{Breaking, RodError, RodModel, RodState};
+use crate::{Breaking, RodError, RodModel, RodState, Tips};
 
 const SCHEMA: &str = "rod-phase/3";
 
@@ -19,8 +19,8 @@ pub(super) struct Course {
     pub phase: Phase,
     /// Longest time, in η/E_b.
     pub until: f64,
-    /// The component that a cut has opened.
-    pub opened: Option<usize>,
+    /// The ends that a cut has made.
+    pub opened: Option<Tips>,
     /// Elastic energy just after a cut and at which its discharge is over, per area.
     pub release: Option<[f64; 2]>,
     /// What the rod bears; the phase is over when that is exceeded.
@@ -168,10 +168,7 @@ impl RodPhaseRun {
                 return Some("broken".to_owned());
             }
             parts_now = is_joined
-                && opened.is_some_and(|c| {
-                    let chain = &s.state.components()[c];
-                    tips_have_parted(s.state, chain, diameter, window)
-                });
+                && opened.is_some_and(|tips| tips_have_parted(s.state, tips, diameter, window));
             parts_now.then(|| "tips parted".to_owned())
         };
         let mut see = |s: &Sample<'_, RodState>| recorder.look(s);

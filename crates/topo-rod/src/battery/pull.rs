@@ -102,6 +102,7 @@ impl ChargedRod {
             vertex: 0,
             at: 0.0,
             component: 0,
+            tips: None,
         })
     }
 }

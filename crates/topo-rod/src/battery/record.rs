@@ -11,7 +11,7 @@ use super::tips::tips_have_parted;
 use crate::contact::ContactPairs;
 use crate::energy::{RodParts, StoredEnergy};
 use crate::model::{CHANNELS, LOAD, WorkAccount};
-use crate::{GripForce, RodState, Tube};
+use crate::{GripForce, RodState, Tips, Tube};
 
 /// The rod at one output time.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -141,8 +141,8 @@ pub(super) struct Recorder {
     pub parts: RodParts,
     /// Values of the current step, kept so that no step allocates.
     stored: Vec<f64>,
-    /// The component that a cut has opened.
-    opened: Option<usize>,
+    /// The ends that a cut has made.
+    opened: Option<Tips>,
     /// Linking numbers of several components.
     links: Links,
     /// Those of the present step.
@@ -177,9 +177,9 @@ impl Recorder {
         }
     }
 
-    /// The same for a discharge after a cut of `component`.
-    pub(super) fn of_cut(mut self, component: usize) -> Self {
-        self.opened = Some(component);
+    /// The same for a discharge after a cut.
+    pub(super) fn of_cut(mut self, tips: Option<Tips>) -> Self {
+        self.opened = tips;
         self
     }
 
@@ -270,9 +270,9 @@ impl Recorder {
             self.tube.contact_diameter.max(self.tube.friction_range),
             0.01,
         );
-        let parted = self.opened.is_some_and(|c| {
-            let (chain, window) = (&state.components()[c], pairs.window().outer());
-            tips_have_parted(state, chain, self.tube.contact_diameter, window)
+        let parted = self.opened.is_some_and(|tips| {
+            let window = pairs.window().outer();
+            tips_have_parted(state, tips, self.tube.contact_diameter, window)
         });
         pairs.set_joined(self.opened);
         pairs.set_cyclic(!parted);

@@ -128,9 +128,8 @@ fn corner(corner: usize, gap: f64) -> RodState {
 /// Tips have parted when all pairs that the seam kept apart by less than the window, 3 or six edges, are farther apart than d.
 #[test]
 fn val_tips_part_when_all_pairs_of_the_seam_are_apart() {
-    let parted = |state: &RodState, d: f64| {
-        super::tips::tips_have_parted(state, &state.components()[0], d, 3.0)
-    };
+    let parted =
+        |state: &RodState, d: f64| super::tips::tips_have_parted(state, crate::Tips::Of(0), d, 3.0);
     for vertex in [0, 3, 6] {
         let state = corner(vertex, 0.9);
         assert!(!parted(&state, 0.95) && parted(&state, 0.85), "{vertex}");

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use super::{BroadPhase, Core, CorePair, Window, arc_separation};
-use crate::RodState;
+use crate::{RodState, Tips};
 
 /// A pair of vertices in reach of each other.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -38,8 +38,8 @@ pub struct ContactPairs {
     reach: f64,
     skin: f64,
     cyclic: bool,
-    /// The open component of several whose ends count as joined while `cyclic`.
-    joined: Option<usize>,
+    /// The ends, of several components, that count as joined while `cyclic`.
+    joined: Option<Tips>,
     candidates: Vec<Candidate>,
     reference: Vec<Vector3<f64>>,
     active: Vec<ActivePair>,
@@ -198,12 +198,20 @@ impl ContactPairs {
             + self.active.capacity() * size_of::<ActivePair>()
     }
 
-    /// Names the component that a cut has opened, of several: `set_cyclic` is about its arclength alone. Without it, open components of
-    /// several have ends like any.
-    pub fn set_joined(&mut self, component: Option<usize>) {
-        if component != self.joined {
-            self.joined = component;
+    /// Names the ends that a cut has made, of several components: `set_cyclic` is about the arclength across them alone. Without it, open
+    /// components of several have ends like any.
+    pub fn set_joined(&mut self, tips: Option<Tips>) {
+        if tips != self.joined {
+            self.joined = tips;
             self.reference.clear();
+        }
+    }
+
+    /// The first of two components across whose ends arclength is counted.
+    pub(crate) fn first_of_two(&self) -> Option<usize> {
+        match self.joined {
+            Some(Tips::Between(c)) if self.cyclic => Some(c),
+            _ => None,
         }
     }
 
@@ -295,12 +303,22 @@ impl ContactPairs {
         let stride = (within / (2.0 * state.rest_length())).round() as usize;
         let stride = stride.clamp(1, n.div_ceil(4));
         let seam = (self.cyclic, self.joined);
+        let first_of_two = self.first_of_two();
+        // vertices of two components are never neighbours, but where a cut has just parted them
+        let apart = |i: usize, j: usize| match first_of_two {
+            Some(c) if [c, c + 1] == [i, j].map(|k| state.component_of(k)) => {
+                (j - i - 1) as f64 * state.components()[c].rest_length()
+            }
+            _ => f64::INFINITY,
+        };
         let separation = |i: usize, j: usize| {
-            // vertices of two components are never neighbours
-            state.common_chain(i, j).map_or(f64::INFINITY, |chain| {
-                let cyclic = is_cyclic(state, state.component_of(i), seam);
-                arc_separation(i, j, chain.rest_length(), chain.length(), cyclic)
-            })
+            state.common_chain(i, j).map_or_else(
+                || apart(i, j),
+                |chain| {
+                    let cyclic = is_cyclic(state, state.component_of(i), seam);
+                    arc_separation(i, j, chain.rest_length(), chain.length(), cyclic)
+                },
+            )
         };
         let share = |i: usize| state.chain_of(i).share(i);
         let candidates = &mut self.candidates;
@@ -335,10 +353,10 @@ impl ContactPairs {
 
 /// Whether arclength along component `c` is counted the shorter way round.
 #[inline]
-fn is_cyclic(state: &RodState, c: usize, (cyclic, joined): (bool, Option<usize>)) -> bool {
+fn is_cyclic(state: &RodState, c: usize, (cyclic, joined): (bool, Option<Tips>)) -> bool {
     match state.components() {
         [_] => cyclic,
-        several => several[c].is_closed() || cyclic && joined == Some(c),
+        several => several[c].is_closed() || cyclic && joined == Some(Tips::Of(c)),
     }
 }
 

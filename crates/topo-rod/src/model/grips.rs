@@ -185,31 +185,37 @@ impl RodModel {
         !self.ends.is_empty()
     }
 
-    /// What holds or draws the ends of the first component that has such ends, at the state accepted last: none of an end that nothing
-    /// holds or draws, and of all before the first step.
+    /// What holds or draws the first end and the last, each of the first component that has it held or drawn, at the state accepted last:
+    /// none of an end that nothing holds or draws, and of all before the first step.
     ///
     /// # Validation
     /// `law_grips_hold_what_the_rod_draws`
     pub fn grip_forces(&self, state: &RodState) -> [Option<GripForce>; 2] {
         let known =
             self.accepted.rate_stamp == Some(state.stamp()) && self.at.stamp == Some(state.stamp());
-        let (Some(placed), true) = (self.ends.first(), known) else {
+        if !known {
             return [None; 2];
-        };
-        let ends = self.ends_at(placed, state.clock());
+        }
         [0, 1].map(|end| {
-            let motion = ends.motions[end];
-            match ends.conditions[end] {
-                EndCondition::Free => {
-                    let loaded = motion.force != [0.0; 3] || motion.torque != 0.0;
-                    loaded.then_some(GripForce {
-                        force: motion.force,
-                        torque: motion.torque,
-                    })
-                }
-                held => Some(self.reaction(state, placed, end, held, motion.torque)),
-            }
+            self.ends
+                .iter()
+                .find_map(|placed| self.grip_force(state, placed, end))
         })
+    }
+
+    fn grip_force(&self, state: &RodState, placed: &PlacedEnds, end: usize) -> Option<GripForce> {
+        let ends = self.ends_at(placed, state.clock());
+        let motion = ends.motions[end];
+        match ends.conditions[end] {
+            EndCondition::Free => {
+                let loaded = motion.force != [0.0; 3] || motion.torque != 0.0;
+                loaded.then_some(GripForce {
+                    force: motion.force,
+                    torque: motion.torque,
+                })
+            }
+            held => Some(self.reaction(state, placed, end, held, motion.torque)),
+        }
     }
 
     fn reaction(

@@ -181,7 +181,7 @@ fn law_newton_steps_solve_their_equations() {
         let n = state.n_vertices();
         // the tips of the open one are still in one place
         let mut pairs = ContactPairs::new(1.7, 0.3);
-        pairs.set_joined(Some(1));
+        pairs.set_joined(Some(crate::Tips::Of(1)));
         pairs.update(&state);
         let geometry = Geometry::new(&state);
         let place = At {
@@ -333,7 +333,7 @@ fn law_velocities_of_a_link_solve_their_equations() {
         let state = link(apart);
         let n = state.n_vertices();
         let mut pairs = ContactPairs::new(1.7, 0.3);
-        pairs.set_joined(Some(1));
+        pairs.set_joined(Some(crate::Tips::Of(1)));
         pairs.update(&state);
         let friction = Friction {
             ratio: 0.7,

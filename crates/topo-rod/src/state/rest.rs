@@ -241,6 +241,20 @@ impl Material {
         }
     }
 
+    /// The same with component `c` parted in two, the second of which starts with `director`: `places` gives the old number of each
+    /// vertex, `is_end` says which are ends now.
+    pub(crate) fn halved(
+        &self,
+        places: &[usize],
+        is_end: impl Fn(usize) -> bool,
+        (c, director): (usize, V),
+    ) -> Self {
+        let own = self.directors[c];
+        let mut halved = self.rearranged(places, is_end, |_| false, (c, own, 0.0));
+        halved.directors.insert(c + 1, director);
+        halved
+    }
+
     /// That of component `c` alone, joined like `chain` within the whole.
     pub(crate) fn component(&self, c: usize, vertices: std::ops::Range<usize>) -> Self {
         Self {

@@ -113,10 +113,49 @@ fn a_cut_doubles_its_vertex_and_starts_there() {
     assert_eq!((open.edge_before(4), open.edge_end(11)), (3, 12));
     assert_eq!((open.end_to_end(), rod.end_to_end()), (0.0, 0.0));
     assert_ne!(open.stamp(), rod.stamp());
-    assert!(rod.cut_at(12).is_err() && open.cut_at(3).is_err());
+    assert!(rod.cut_at(12).is_err() && open.cut_at(1).is_err() && open.cut_at(11).is_err());
     let mut apart = open.clone();
     apart.vertices[12] += Vector3::new(0.0, 3.0, 4.0);
     assert!((apart.end_to_end() - 5.0).abs() < 1e-12);
+}
+
+/// An open rod becomes two where it is cut, each as it was: their twists, directors and natural shape too; what lies behind moves up by one.
+#[test]
+fn an_open_rod_is_cut_into_two() {
+    let curved = |rod: RodState| {
+        rod.with_rest(|_, s| [0.3, 0.1 * s], |_, s| 0.2 * s)
+            .unwrap()
+    };
+    let open = curved(ring(12, 6.0, 0.7).cut_at(5).unwrap());
+    let link = RodState::link([&open, &curved(ring(9, 4.0, -0.3))]).unwrap();
+    let halves = link.cut_at(7).unwrap();
+    let chains = halves.components();
+    assert_eq!(
+        chains.iter().map(Chain::n_edges).collect::<Vec<_>>(),
+        [7, 5, 9]
+    );
+    assert_eq!(halves.vertices()[7], halves.vertices()[8]);
+    let (before, after) = (Geometry::new(&link), Geometry::new(&halves));
+    for (k, place) in (0..=7).chain(7..link.n_vertices()).enumerate() {
+        assert_eq!(halves.vertices()[k], link.vertices()[place]);
+        let is_end = k == 7 || k == 8;
+        let (twist, rest) = (halves.twists()[k], halves.rest().unwrap());
+        let kept = link.rest().unwrap();
+        assert_eq!(twist, if is_end { 0.0 } else { link.twists()[place] });
+        assert_eq!(rest.twist[k], if is_end { 0.0 } else { kept.twist[place] });
+        let curvature = if is_end {
+            [0.0; 2]
+        } else {
+            kept.curvature[place]
+        };
+        assert_eq!(rest.curvature[k], curvature);
+        if halves.chain_of(k).edges().contains(&k) {
+            assert!(
+                (after.director[k] - before.director[place]).norm() < 1e-12,
+                "{k}"
+            );
+        }
+    }
 }
 
 /// A link keeps its rods as they are; a cut opens one of them and moves those behind it up; each can be taken out again.
@@ -162,7 +201,7 @@ fn a_link_is_its_rods_one_after_the_other() {
         assert_eq!(open.writhe_of(k).unwrap(), rod.writhe());
         assert_eq!(open.total_twist_of(k).unwrap(), rod.total_twist());
     }
-    assert!(open.component(3).is_err() && open.linking(1, 1).is_err() && open.cut_at(14).is_err());
+    assert!(open.component(3).is_err() && open.linking(1, 1).is_err() && open.cut_at(13).is_err());
     assert!(RodState::link([]).is_err() && link.centreline().is_err());
     assert_eq!(link.centrelines().unwrap().len(), 3);
     // one rod is no link

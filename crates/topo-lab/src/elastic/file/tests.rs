@@ -469,6 +469,10 @@ fn values_out_of_range_are_refused() {
             ["line 3: charge.twisting", "give `twist`"],
         ),
         (
+            "[discharge]\ncuts = \"let-go\"",
+            ["line 4: discharge.cuts = let-go", "say where to cut"],
+        ),
+        (
             "twist = 1\n[charge.twisting]\nover = 5\ntorque = [[0, 0], [2, 1], [1, 1]]",
             ["line 6: charge.twisting.torque", "in the order of time"],
         ),

@@ -62,6 +62,9 @@ const BESIDE: &[(&str, &str)] = &[
     ("pull.outputs", "pull.grips = [{}, {}]"),
     ("pull.outputs", "pull.duration = 2.0"),
     ("pull.grips", "pull.duration = 2.0"),
+    ("charge.twisting.torque", "charge.twisting.over = 5.0"),
+    ("charge.twisting.torque.to", "charge.twisting.over = 5.0"),
+    ("charge.twisting.torque.over", "charge.twisting.over = 5.0"),
     ("charge.break.criterion", "charge.break.threshold = 0.8"),
     (
         "charge.break.threshold",
