@@ -68,7 +68,8 @@ impl Curve {
         Ok(all.swap_remove(0))
     }
 
-    /// Reads the closed curves of a table: one, or the components of a link in their order.
+    /// Reads the curves of a table of whole shapes: one, or the components of a link in their order. One is open whose ends are farther
+    /// apart than two of its edges.
     ///
     /// # Errors
     /// A table that cannot be read, or a curve of too few vertices.
@@ -77,7 +78,7 @@ impl Curve {
         if all.is_empty() {
             return Err(unusable(path, "no vertices".to_owned()));
         }
-        curves(path, &all, |_| true)
+        curves(path, &all, are_joined)
     }
 
     fn new(vertices: &[Vertex], closed: bool) -> Self {
@@ -92,6 +93,13 @@ impl Curve {
             twist: vertices.iter().map(|v| v.twist).collect(),
         }
     }
+}
+
+/// Whether the last of these vertices is followed by the first.
+fn are_joined(of: &[Vertex]) -> bool {
+    let apart = |a: &Vertex, b: &Vertex| (a.x - b.x).hypot(a.y - b.y).hypot(a.z - b.z);
+    let longest = of.windows(2).map(|edge| apart(&edge[0], &edge[1]));
+    apart(&of[0], &of[of.len() - 1]) <= 2.0 * longest.fold(0.0, f64::max)
 }
 
 fn unusable(path: &Path, reason: String) -> ViewError {
@@ -137,7 +145,7 @@ pub struct Snapshot {
 /// Reads `snapshots.csv` of a case, in order of the file.
 ///
 /// A component that is cut has one vertex more than in `charged.csv`, its last one where its first one was. That tells open components
-/// of a link from closed ones; a fibre alone is cut.
+/// of a link from closed ones; a fibre alone is cut, and one that was open is two then.
 ///
 /// # Errors
 /// Tables that cannot be read or do not belong together, or a curve of too few vertices.
@@ -154,8 +162,12 @@ pub fn snapshots(case: &Path) -> Result<Vec<Snapshot>, ViewError> {
     };
     let shot = |of: &[Vertex]| {
         let curves = curves(&path, of, is_closed)?;
-        if curves.len() != whole.len().max(1) {
-            let (found, n) = (curves.len(), whole.len().max(1));
+        let n = match &whole[..] {
+            [open] if !open.closed => 2,
+            several => several.len().max(1),
+        };
+        if curves.len() != n {
+            let found = curves.len();
             let reason = format!("a shape of {found} components, charged.csv has {n}");
             return Err(unusable(&path, reason));
         }
@@ -185,4 +197,50 @@ pub struct Moment {
 /// Reads `series.csv`.
 pub fn series(path: &Path) -> Result<Vec<Moment>, ViewError> {
     read_csv(path)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+
+    /// A fibre that was open is told from a ring by its ends, and is two once it is cut.
+    #[test]
+    fn open_fibres_are_two_when_they_are_cut() {
+        let folder = tempfile::tempdir().unwrap();
+        let row = |k: usize| format!("{},{k},0,{}", 0.5 * k as f64, (k % 2) as f64);
+        let rows = |of: &mut dyn Iterator<Item = String>| of.collect::<Vec<_>>().join("\n");
+        let open = rows(&mut (0..9).map(row));
+        let charged = folder.path().join("charged.csv");
+        fs::write(&charged, format!("s,x,y,z\n{open}\n")).unwrap();
+        assert!(!Curve::read(&charged).unwrap().closed);
+        let half = |c: usize, of: std::ops::Range<usize>| {
+            rows(&mut of.map(|k| format!("{c},0.5,1.0,{}", row(k))))
+        };
+        let path = folder.path().join("snapshots.csv");
+        let [one, two] = [half(1, 0..5), half(2, 4..9)];
+        fs::write(&path, format!("component,cut,time,s,x,y,z\n{one}\n{two}\n")).unwrap();
+        let shots = snapshots(folder.path()).unwrap();
+        let found: Vec<_> = shots[0]
+            .curves
+            .iter()
+            .map(|c| (c.points.len(), c.closed))
+            .collect();
+        assert_eq!(found, [(5, false), (5, false)]);
+        let ring = (0..8).map(|k| {
+            let u = std::f64::consts::TAU * f64::from(k) / 8.0;
+            format!("{},{},{},0", f64::from(k), u.cos(), u.sin())
+        });
+        fs::write(
+            &charged,
+            format!("s,x,y,z\n{}\n", rows(&mut ring.into_iter())),
+        )
+        .unwrap();
+        assert!(Curve::read(&charged).unwrap().closed);
+        let message = snapshots(folder.path()).unwrap_err().to_string();
+        assert!(
+            message.contains("a shape of 2 components, charged.csv has 1"),
+            "{message}"
+        );
+    }
 }
