@@ -204,7 +204,7 @@ mod tests {
     use super::*;
     use std::fs;
 
-    /// A fibre that was open is told from a ring by its ends, and is two once it is cut.
+    /// A fibre that was open is known from a ring by its ends, and is two once it is cut.
     #[test]
     fn open_fibres_are_two_when_they_are_cut() {
         let folder = tempfile::tempdir().unwrap();
