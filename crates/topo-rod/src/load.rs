@@ -419,3 +419,40 @@ impl LoadCorrection {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Ends that go round each other do not move along their line, though their velocities turn into it.
+    #[test]
+    fn the_turning_of_a_line_is_no_motion_along_it() {
+        let line = (0..=8).map(|k| Vector3::new(0.5 * f64::from(k), 0.0, 0.0));
+        let line = topo_core::Polyline::new(line.collect(), false).unwrap();
+        let before = RodState::new(&line, 4.0, 0.0).unwrap();
+        let turn = nalgebra::Rotation3::from_axis_angle(&Vector3::z_axis(), 0.1);
+        let after = before.with_vertices(before.vertices().iter().map(|x| turn * x).collect());
+        let settings = EndLoad {
+            dashpot: 10.0,
+            ..EndLoad::default()
+        };
+        let mut load = Load::attached(settings, &before.components()[0], &before);
+        load.here = load.at(&after);
+        let rate = |state: &RodState| -> Vec<f64> {
+            let spin = |k: usize| move |x: &Vector3<f64>| Vector3::z().cross(x)[k];
+            (0..3)
+                .flat_map(|k| state.vertices().iter().map(spin(k)))
+                .collect()
+        };
+        let rates = [rate(&before), rate(&after)];
+        let change = load.relative(&rates[1]) - load.relative(&rates[0]);
+        let left = change - load.turning(&rates[0], &rates[1]);
+        let along = (load.accepted.line + load.here.line).normalize();
+        assert!(change.dot(&along).abs() > 0.3, "{}", change.dot(&along));
+        assert!(left.dot(&along).abs() < 0.01 * change.dot(&along).abs());
+        assert!(
+            (left - along * left.dot(&along) - (change - along * change.dot(&along))).norm()
+                < 1e-12
+        );
+    }
+}
