@@ -275,9 +275,6 @@ impl RodState {
         let opened = (0..=n).map(|k| first + (vertex - first + k) % n);
         let places: Vec<usize> = (0..first).chain(opened).chain(behind..n_vertices).collect();
         let is_end = |k: usize| k == first || k == first + n;
-        let twist = |(k, &place): (usize, &usize)| {
-            if is_end(k) { 0.0 } else { self.twists[place] }
-        };
         let chains = self.components().iter();
         let chains = chains.map(|chain| if *chain == cut { cut.opened() } else { *chain });
         let material = self.joined.material.as_ref().map(|material| {
@@ -290,17 +287,7 @@ impl RodState {
             let director = geometry.director[vertex];
             Box::new(material.rearranged(&places, is_end, is_behind, (c, director, seam)))
         });
-        Ok(Self {
-            vertices: places.iter().map(|&place| self.vertices[place]).collect(),
-            twists: places.iter().enumerate().map(twist).collect(),
-            joined: Joined {
-                layout: Layout::of(chains),
-                material,
-            },
-            stamp: self.stamp + 1,
-            clock: 0.0,
-            turns: Vec::new(),
-        })
+        Ok(self.parted(&places, is_end, chains, material))
     }
 
     /// The rods with the open component `cut` parted at `vertex`.
@@ -312,8 +299,6 @@ impl RodState {
         }
         let places: Vec<usize> = (0..=vertex).chain(vertex..self.vertices.len()).collect();
         let is_end = |k: usize| k == vertex || k == vertex + 1;
-        let mut twists: Vec<f64> = places.iter().map(|&place| self.twists[place]).collect();
-        twists[vertex..=vertex + 1].fill(0.0);
         let chains = self.components().iter();
         let chains = chains.flat_map(|chain| {
             let halves = (chain == cut).then(|| chain.halves(vertex));
@@ -323,9 +308,23 @@ impl RodState {
             let director = Geometry::new(self).director[vertex];
             Box::new(material.halved(&places, is_end, (self.component_of(vertex), director)))
         });
-        Ok(Self {
+        Ok(self.parted(&places, is_end, chains, material))
+    }
+
+    /// The rods that a cut leaves: `places` gives the old number of each vertex, `is_end` says which are ends now and have no twist.
+    fn parted(
+        &self,
+        places: &[usize],
+        is_end: impl Fn(usize) -> bool,
+        chains: impl IntoIterator<Item = Chain>,
+        material: Option<Box<Material>>,
+    ) -> Self {
+        let twist = |(k, &place): (usize, &usize)| {
+            if is_end(k) { 0.0 } else { self.twists[place] }
+        };
+        Self {
             vertices: places.iter().map(|&place| self.vertices[place]).collect(),
-            twists,
+            twists: places.iter().enumerate().map(twist).collect(),
             joined: Joined {
                 layout: Layout::of(chains),
                 material,
@@ -333,7 +332,7 @@ impl RodState {
             stamp: self.stamp + 1,
             clock: 0.0,
             turns: Vec::new(),
-        })
+        }
     }
 
     /// Moves the rod by a finite step: displacements (component-major, 3 × vertices) and, if twist is modelled, edge rotations.
