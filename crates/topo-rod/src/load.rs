@@ -327,7 +327,8 @@ impl Load {
         [a, smoothed]: [Vector3<f64>; 2],
         g: Option<f64>,
     ) -> f64 {
-        let form = |u: Vector3<f64>, v: Vector3<f64>| u.dot(&(self.mean_damping() * v));
+        let damping = self.mean_damping();
+        let form = |u: Vector3<f64>, v: Vector3<f64>| u.dot(&(damping * v));
         let moved = self.relative(step);
         let slow = form(moved, moved);
         let heat = slow * (1.0 + excess(slow, g, a, smoothed, form)) / dt;

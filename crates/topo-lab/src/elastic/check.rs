@@ -63,7 +63,7 @@ pub(super) fn faults(
     }
     let refuse = |e| refused(document, e);
     see(scene.accuracy.checked().map(drop).map_err(refuse));
-    see(scene.charge.clone().checked().map(drop).map_err(refuse));
+    see(scene.charge.checked().map_err(refuse));
     if let Some(si) = scene.si {
         let wrong = |e: InvalidValue| {
             let key = format!("si.{}", e.name);

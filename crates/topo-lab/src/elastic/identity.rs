@@ -26,7 +26,7 @@ pub(crate) fn fingerprint(scene: &ElasticScene, case: &ElasticCase, entry: &Entr
         all["typed_links"] = true.into();
     }
     // earlier programs booked work across the line of a load, and turned seams by the clock
-    if scene.discharge.load.is_some() || scene.load.is_some() {
+    if case.load.is_some() {
         all["loads"] = 2.into();
     }
     if scene.charge.twisting.is_some() {

@@ -66,7 +66,7 @@ impl ChargeSettings {
     ///
     /// # Errors
     /// Names the first value out of range and what would be right.
-    pub fn checked(self) -> Result<Self, RodError> {
+    pub fn checked(&self) -> Result<(), RodError> {
         positive("charge.duration", self.duration)?;
         positive("charge.first_output", self.first_output)?;
         positive("charge.outputs_per_decade", self.outputs_per_decade)?;
@@ -77,7 +77,7 @@ impl ChargeSettings {
                 torque.checked("charge.twisting.torque", false)?;
             }
         }
-        Ok(self)
+        Ok(())
     }
 }
 
@@ -106,7 +106,7 @@ impl RodBattery {
         settings: &ChargeSettings,
         hooks: &mut RunHooks<'_>,
     ) -> Result<ChargedRod, RodError> {
-        let settings = &settings.clone().checked()?;
+        settings.checked()?;
         let mut state = self.start.clone();
         let scales = Scales::of(&state);
         let mut until = settings.duration * scales.time;

@@ -19,9 +19,8 @@ pub(crate) fn tips_have_parted(state: &RodState, tips: Tips, distance: f64, wind
         }),
         Tips::Between(c) => {
             let next = state.components()[c + 1].vertices();
-            let own = chain.vertices().rev().enumerate().take(reach + 1);
-            own.into_iter()
-                .all(|(k, i)| next.clone().take(reach - k + 1).all(|j| are_apart(i, j)))
+            let mut own = chain.vertices().rev().enumerate().take(reach + 1);
+            own.all(|(k, i)| next.clone().take(reach - k + 1).all(|j| are_apart(i, j)))
         }
     }
 }

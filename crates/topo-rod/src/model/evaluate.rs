@@ -120,7 +120,7 @@ impl RodModel {
             w.copy_from_slice(&self.at.force.torque);
             if let Some(motor) = &self.motor {
                 let (joints, cosine) = (&self.at.joints, &self.at.geometry.cosine);
-                motor.load(state.clock(), joints, cosine, w, behind);
+                motor.balance(state.clock(), joints, cosine, w, behind);
             }
             for &(j, turn) in &self.held_edges {
                 w[j] = turn;

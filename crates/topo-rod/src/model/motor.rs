@@ -104,7 +104,7 @@ impl Motor {
     /// The right side of the equations of the turns: what a given turn adds to the torques that the edges must balance, or what of
     /// a given torque the joint leaves to be balanced, of which it carries `joints`. `drives` becomes the rates of the turns, or these
     /// torques.
-    pub(super) fn load(
+    pub(super) fn balance(
         &self,
         time: f64,
         joints: &[f64],
