@@ -4,6 +4,7 @@ use std::cmp::Ordering;
 use std::fmt;
 
 use serde::{Deserialize, Serialize};
+use strsim::levenshtein;
 
 /// Name of the unknot.
 pub(crate) const UNKNOT: &str = "0_1";
@@ -166,6 +167,17 @@ impl From<KnotName> for String {
     fn from(name: KnotName) -> Self {
         name.to_string()
     }
+}
+
+/// The names most like a name that is not known, at most two letters away.
+pub(crate) fn similar<'a>(name: &str, known: impl Iterator<Item = &'a String>) -> Vec<String> {
+    let mut near: Vec<(usize, &String)> = known
+        .map(|known| (levenshtein(name, known), known))
+        .filter(|(distance, _)| *distance <= 2)
+        .collect();
+    near.sort_unstable();
+    let nearest = near.into_iter().take(4);
+    nearest.map(|(_, known)| known.clone()).collect()
 }
 
 /// Name of the mirror image of a shape. A knot gains or loses its leading `m`, even where the mirror image is the same knot

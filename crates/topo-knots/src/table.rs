@@ -4,10 +4,9 @@ use std::borrow::Cow;
 use std::collections::{BTreeMap, HashSet};
 use std::path::Path;
 use std::sync::{LazyLock, OnceLock};
-use strsim::levenshtein;
 
 use crate::KnotError;
-use crate::name::{self, Factor, KnotName};
+use crate::name::{self, Factor, KnotName, similar};
 use include_dir::{Dir, include_dir};
 
 mod census;
@@ -17,6 +16,7 @@ mod file;
 
 pub use chirality::Chirality;
 pub use entry::KnotEntry;
+pub(crate) use file::FileReference;
 
 /// Beginning of the label of a knot without a name.
 pub(crate) const UNKNOWN: &str = "unknown(";
@@ -246,23 +246,11 @@ impl KnotTable {
     }
 
     fn unknown(&self, name: &str) -> KnotError {
-        let mut near: Vec<(usize, &String)> = self
-            .names
-            .iter()
-            .filter(|(_, (_, mirrored))| !mirrored)
-            .map(|(known, _)| known)
-            .chain(self.census().map(|knot| &knot.name))
-            .map(|known| (levenshtein(name, known), known))
-            .collect();
-        near.sort();
-        let near = near
-            .iter()
-            .filter(|(d, _)| *d <= 2)
-            .take(4)
-            .map(|(_, k)| (*k).clone());
+        let own = self.names.iter().filter(|(_, (_, mirrored))| !mirrored);
+        let census = self.census().map(|knot| &knot.name);
         KnotError::UnknownKnot {
             name: name.to_owned(),
-            near: near.collect(),
+            near: similar(name, own.map(|(known, _)| known).chain(census)),
         }
     }
 

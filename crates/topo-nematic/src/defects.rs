@@ -71,7 +71,7 @@ type Square = (usize, usize);
 /// [schimming2022]: https://doi.org/10.1039/D1SM01584B
 pub fn defect_lines(state: &NematicState) -> Vec<DefectLine> {
     let tracer = Tracer::new(state);
-    let mut squares = tracer.pierced_squares();
+    let squares = tracer.pierced_squares();
     // Cubes, and the pierced squares on them.
     let mut cubes: HashMap<usize, Vec<Square>> = HashMap::new();
     for square in &squares {
@@ -82,9 +82,9 @@ pub fn defect_lines(state: &NematicState) -> Vec<DefectLine> {
     let mut used: HashMap<Square, bool> = squares.iter().map(|s| (*s, false)).collect();
     // Open lines first, from their ends, so that none is cut in two.
     let is_end = |s: &Square| tracer.cubes_of(*s).iter().any(Option::is_none);
-    squares.sort_by_key(|s| (!is_end(s), *s));
+    let (ends, others): (Vec<Square>, Vec<Square>) = squares.iter().partition(|s| is_end(s));
     let mut lines = Vec::new();
-    for first in &squares {
+    for first in ends.iter().chain(&others) {
         if used[first] {
             continue;
         }

@@ -48,7 +48,7 @@ pub(super) fn candidates(found: &Found<'_>, table: &KnotTable) -> Vec<Candidate>
             }
         }
     }
-    search.list.sort_by_key(|c| {
+    search.list.sort_by_cached_key(|c| {
         let (crossings, place) = rolfsen(&c.unsided().to_string()).unwrap_or((u32::MAX, 0));
         (c.name.is_sum(), crossings, place)
     });

@@ -7,6 +7,7 @@ use serde::Deserialize;
 use super::LinkJones;
 use crate::Chirality;
 use crate::braid::check_link_word;
+use crate::table::FileReference;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -29,13 +30,6 @@ pub(super) struct FileInvariants {
     pub components: Vec<String>,
     pub linking: Vec<i32>,
     pub jones: LinkJones,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct FileReference {
-    pub length_over_radius: f64,
-    pub source: String,
 }
 
 impl File {
@@ -77,14 +71,6 @@ impl File {
                 n - 1
             ));
         }
-        match &self.reference {
-            Some(r) if !(r.length_over_radius.is_finite() && r.length_over_radius > 0.0) => {
-                Err(format!(
-                    "`reference.length_over_radius` = {} must be positive",
-                    r.length_over_radius
-                ))
-            }
-            _ => Ok(()),
-        }
+        self.reference.as_ref().map_or(Ok(()), FileReference::check)
     }
 }

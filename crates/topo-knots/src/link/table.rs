@@ -5,10 +5,9 @@ use std::f64::consts::PI;
 use std::sync::LazyLock;
 
 use include_dir::{Dir, include_dir};
-use strsim::levenshtein;
 
 use super::LinkEntry;
-use crate::name::mirror_name;
+use crate::name::{mirror_name, similar};
 use crate::{Chirality, KnotError};
 
 static BUILTIN: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/links");
@@ -49,7 +48,7 @@ impl LinkTable {
         let mut entries: Vec<LinkEntry> = files.collect();
         let families = CHAINS.map(chain).chain(TORUS.map(torus));
         entries.extend(families.filter_map(Result::ok));
-        entries.sort_by(|a, b| place(a).cmp(&place(b)));
+        entries.sort_by_cached_key(place);
         Self { entries }
     }
 
@@ -87,14 +86,9 @@ impl LinkTable {
             .entries
             .iter()
             .flat_map(|e| e.aliases.iter().chain([&e.name]));
-        let mut near: Vec<(usize, &String)> = names
-            .map(|known| (levenshtein(name, known), known))
-            .collect();
-        near.sort();
-        let near = near.iter().filter(|(d, _)| *d <= 2).take(4);
         KnotError::UnknownLink {
             name: name.to_owned(),
-            near: near.map(|(_, known)| (*known).clone()).collect(),
+            near: similar(name, names),
         }
     }
 
@@ -115,15 +109,15 @@ impl LinkTable {
 }
 
 /// Families last, then crossing number, alternating before others, number, name.
-fn place(entry: &LinkEntry) -> (bool, u32, bool, u32, &str) {
-    let name = entry.name.as_str();
+fn place(entry: &LinkEntry) -> (bool, u32, bool, u32, String) {
+    let name = &entry.name;
     let number = name.rsplit(['a', 'n']).next().and_then(|n| n.parse().ok());
     (
         !name.starts_with('L'),
         entry.crossing_number,
         name.contains('n'),
         number.unwrap_or(u32::MAX),
-        name,
+        name.clone(),
     )
 }
 

@@ -41,9 +41,22 @@ pub(super) struct FileInvariants {
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct FileReference {
+pub(crate) struct FileReference {
     pub length_over_radius: f64,
     pub source: String,
+}
+
+impl FileReference {
+    /// The published length is a length.
+    pub(crate) fn check(&self) -> Result<(), String> {
+        let length = self.length_over_radius;
+        if length.is_finite() && length > 0.0 {
+            return Ok(());
+        }
+        Err(format!(
+            "`reference.length_over_radius` = {length} must be positive"
+        ))
+    }
 }
 
 impl File {
@@ -144,13 +157,8 @@ impl File {
                 self.name
             ));
         }
-        if let Some(reference) = &self.reference
-            && !(reference.length_over_radius.is_finite() && reference.length_over_radius > 0.0)
-        {
-            return Err(format!(
-                "`reference.length_over_radius` = {} must be positive",
-                reference.length_over_radius
-            ));
+        if let Some(reference) = &self.reference {
+            reference.check()?;
         }
         if !self.braid.is_empty() {
             check_word(&self.braid).map_err(|e| format!("`braid` = {:?}: {e}", self.braid))?;

@@ -1,23 +1,23 @@
-//! Archives of arrays for numpy; the only file that names the crates which write them.
+//! Archives of arrays for numpy: `.npz`, a zip file of arrays in the format `.npy`.
 
 use super::about::{About, Fact};
 use crate::data;
 use crate::error::ViewError;
-use ndarray::{ArrayD, IxDyn};
-use ndarray_npy::{NpzWriter, WritableElement, WriteDataError};
 use std::io::{Cursor, Write};
 use std::path::Path;
+use zip::write::SimpleFileOptions;
+use zip::{CompressionMethod, ZipWriter};
 
 /// An archive in the making.
 pub struct Archive {
-    writer: NpzWriter<Cursor<Vec<u8>>>,
+    writer: ZipWriter<Cursor<Vec<u8>>>,
 }
 
 impl Archive {
     /// One that says what it is about.
     pub fn new(about: &About) -> Result<Self, ViewError> {
         let mut archive = Self {
-            writer: NpzWriter::new(Cursor::new(Vec::new())),
+            writer: ZipWriter::new(Cursor::new(Vec::new())),
         };
         for (name, fact) in about.facts() {
             match fact {
@@ -25,25 +25,52 @@ impl Archive {
                     archive.add(name, &[], values.clone())?;
                 }
                 Fact::Numbers(values) => archive.add(name, &[values.len()], values.clone())?,
-                Fact::Words(words) => archive.add(name, &[], vec![Words::new(name, words)?])?,
+                Fact::Words(words) => archive.add_words(name, words)?,
             }
         }
         Ok(archive)
     }
 
     /// Adds an array, its last index running fastest.
-    pub fn add<T: WritableElement>(
+    pub fn add<T: Element>(
         &mut self,
         name: &str,
         shape: &[usize],
         values: Vec<T>,
     ) -> Result<(), ViewError> {
-        let array =
-            ArrayD::from_shape_vec(IxDyn(shape), values).map_err(|e| wrong(name, e.to_string()))?;
+        let n: usize = shape.iter().product();
+        if n != values.len() {
+            let reason = format!("{} values for the shape {shape:?}", values.len());
+            return Err(wrong(name, reason));
+        }
+        let mut array = header(T::TYPE, shape);
+        values.into_iter().for_each(|x| x.append(&mut array));
+        self.put(name, &array)
+    }
+
+    /// Adds a string.
+    fn add_words(&mut self, name: &str, words: &str) -> Result<(), ViewError> {
+        let n = words.chars().count();
+        // numpy has no type of strings without a character
+        let mut array = header(&format!("<U{}", n.max(1)), &[]);
+        let padding = (n == 0).then_some('\0');
+        words
+            .chars()
+            .chain(padding)
+            .for_each(|c| array.extend(u32::from(c).to_le_bytes()));
+        self.put(name, &array)
+    }
+
+    fn put(&mut self, name: &str, array: &[u8]) -> Result<(), ViewError> {
+        let options = SimpleFileOptions::default()
+            .compression_method(CompressionMethod::Stored)
+            .large_file(u32::try_from(array.len()).is_err());
         self.writer
-            .add_array(name, &array)
+            .start_file(format!("{name}.npy"), options)
             .map_err(|e| wrong(name, e.to_string()))?;
-        Ok(())
+        self.writer
+            .write_all(array)
+            .map_err(|e| wrong(name, e.to_string()))
     }
 
     /// Writes the archive.
@@ -61,37 +88,56 @@ fn wrong(name: &str, reason: String) -> ViewError {
     }
 }
 
-/// Most characters of words. Numpy's strings have a fixed length, which belongs to the type, and drop the zeros at the end.
-const LONGEST: usize = 256;
+/// Where values begin: at a multiple of this.
+const ALIGNMENT: usize = 64;
 
-/// A string of numpy.
-struct Words([char; LONGEST]);
-
-impl Words {
-    fn new(name: &str, words: &str) -> Result<Self, ViewError> {
-        if words.chars().count() > LONGEST {
-            let reason = format!("more than {LONGEST} characters: {words}");
-            return Err(wrong(name, reason));
-        }
-        let mut all = ['\0'; LONGEST];
-        all.iter_mut().zip(words.chars()).for_each(|(a, c)| *a = c);
-        Ok(Self(all))
-    }
+/// What stands before the values of an array: version 1.0 of the format of
+/// [`numpy.lib.format`](https://numpy.org/doc/stable/reference/generated/numpy.lib.format.html).
+///
+/// A library for these lines would bring a parser of Python's literals, and with it two dozen crates.
+fn header(of: &str, shape: &[usize]) -> Vec<u8> {
+    let lengths: String = shape.iter().map(|n| format!("{n}, ")).collect();
+    let mut text = format!("{{'descr': '{of}', 'fortran_order': False, 'shape': ({lengths})}}");
+    const LEAD: usize = 10;
+    let end = (LEAD + text.len() + 1).next_multiple_of(ALIGNMENT);
+    text.extend(std::iter::repeat_n(' ', end - LEAD - text.len() - 1));
+    text.push('\n');
+    let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
+    bytes.extend((text.len() as u16).to_le_bytes());
+    bytes.extend(text.into_bytes());
+    bytes
 }
 
-impl WritableElement for Words {
-    fn type_descriptor() -> py_literal::Value {
-        py_literal::Value::String(format!("<U{LONGEST}"))
-    }
+/// What an array can hold.
+pub trait Element {
+    /// Its name in the format: order of bytes, kind, number of bytes.
+    const TYPE: &'static str;
 
-    fn write<W: Write>(&self, mut writer: W) -> Result<(), WriteDataError> {
-        for c in self.0 {
-            writer.write_all(&u32::from(c).to_le_bytes())?;
+    /// Appends its bytes.
+    fn append(self, to: &mut Vec<u8>);
+}
+
+macro_rules! element {
+    ($type:ty, $name:literal) => {
+        impl Element for $type {
+            const TYPE: &'static str = $name;
+
+            fn append(self, to: &mut Vec<u8>) {
+                to.extend(self.to_le_bytes());
+            }
         }
-        Ok(())
-    }
+    };
+}
 
-    fn write_slice<W: Write>(slice: &[Self], mut writer: W) -> Result<(), WriteDataError> {
-        slice.iter().try_for_each(|words| words.write(&mut writer))
+element!(f64, "<f8");
+element!(f32, "<f4");
+element!(i64, "<i8");
+element!(u8, "|u1");
+
+impl Element for bool {
+    const TYPE: &'static str = "|b1";
+
+    fn append(self, to: &mut Vec<u8>) {
+        to.push(u8::from(self));
     }
 }

@@ -8,7 +8,11 @@ use super::{Made, Wanted, vtk};
 use crate::error::ViewError;
 use crate::outside::Outside;
 use crate::shown::Shown;
+use ndarray::ArrayD;
+use ndarray_npy::NpzReader;
 use serde_json::{Value, json};
+use std::fs::File;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use topo_analysis::write_table;
@@ -291,9 +295,51 @@ fn empty_pieces_say_that_they_are_empty() {
 }
 
 #[test]
-fn words_too_long_for_an_archive_are_refused() {
-    let about = |n: usize| About::default().with("knot", "x".repeat(n).as_str());
-    assert!(Archive::new(&about(256)).is_ok());
-    let refused = Archive::new(&about(257)).err().unwrap().to_string();
-    assert!(refused.contains("knot"), "{refused}");
+fn an_archive_reads_back_with_words_of_any_length() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("all.npz");
+    let long = "θ".repeat(300);
+    let about = About::default()
+        .with("long", long.as_str())
+        .with("empty", "")
+        .with("length", 2.5);
+    let mut archive = Archive::new(&about).unwrap();
+    let wide: Vec<f64> = (0..24).map(|k| f64::from(k) / 7.0).collect();
+    archive.add("wide", &[2, 3, 4], wide.clone()).unwrap();
+    archive.add("single", &[2], vec![1.5_f32, -0.0]).unwrap();
+    archive.add("whole", &[], vec![i64::MIN]).unwrap();
+    archive.add("bytes", &[3], vec![0_u8, 7, 255]).unwrap();
+    archive.add("truth", &[2], vec![true, false]).unwrap();
+    archive.add("none", &[0, 3], Vec::<f64>::new()).unwrap();
+    let refused = archive.add("short", &[5], vec![0.0; 4]).unwrap_err();
+    assert!(refused.to_string().contains("array short: 4 values"));
+    archive.write(&path).unwrap();
+
+    let mut read = NpzReader::new(File::open(&path).unwrap()).unwrap();
+    let found: ArrayD<f64> = read.by_name("wide").unwrap();
+    assert_eq!(found, ArrayD::from_shape_vec(vec![2, 3, 4], wide).unwrap());
+    let single: ArrayD<f32> = read.by_name("single").unwrap();
+    assert_eq!(single.as_slice().unwrap(), [1.5, -0.0]);
+    let whole: ArrayD<i64> = read.by_name("whole").unwrap();
+    assert_eq!((whole.ndim(), whole.sum()), (0, i64::MIN));
+    let bytes: ArrayD<u8> = read.by_name("bytes").unwrap();
+    assert_eq!(bytes.as_slice().unwrap(), [0, 7, 255]);
+    let truth: ArrayD<bool> = read.by_name("truth").unwrap();
+    assert_eq!(truth.as_slice().unwrap(), [true, false]);
+    let none: ArrayD<f64> = read.by_name("none").unwrap();
+    assert_eq!(none.shape(), [0, 3]);
+    let length: ArrayD<f64> = read.by_name("length").unwrap();
+    assert_eq!(length.sum(), 2.5);
+    for (name, words, n) in [("long", long.as_str(), 300), ("empty", "\0", 1)] {
+        let mut zip = zip::ZipArchive::new(File::open(&path).unwrap()).unwrap();
+        let mut bytes = Vec::new();
+        let mut entry = zip.by_name(&format!("{name}.npy")).unwrap();
+        entry.read_to_end(&mut bytes).unwrap();
+        let values = bytes.len() - 4 * n;
+        let header = String::from_utf8_lossy(&bytes[10..values]);
+        assert!(header.contains(&format!("'<U{n}'")) && values % 64 == 0);
+        let letter = |c: &[u8]| char::from_u32(u32::from_le_bytes(c.try_into().unwrap())).unwrap();
+        let found: String = bytes[values..].chunks_exact(4).map(letter).collect();
+        assert_eq!(found, words);
+    }
 }
