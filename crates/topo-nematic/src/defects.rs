@@ -173,6 +173,7 @@ impl<'a> Tracer<'a> {
         corners.iter().all(|c| self.fluid[*c]).then_some(corners)
     }
 
+    /// In ascending order.
     fn pierced_squares(&self) -> Vec<Square> {
         let mut squares = Vec::new();
         for cell in 0..self.grid.n_cells() {

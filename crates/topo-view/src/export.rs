@@ -14,7 +14,7 @@ mod vtk;
 pub use about::{About, Fact};
 pub use files::{Files, Wanted};
 pub use finished::Finished;
-pub use npz::Archive;
+pub use npz::{Archive, Element};
 pub use vtk::{Array, line};
 
 use crate::error::ViewError;

@@ -44,20 +44,17 @@ impl Archive {
             return Err(wrong(name, reason));
         }
         let mut array = header(T::TYPE, shape);
+        array.reserve(size_of_val(values.as_slice()));
         values.into_iter().for_each(|x| x.append(&mut array));
         self.put(name, &array)
     }
 
     /// Adds a string.
     fn add_words(&mut self, name: &str, words: &str) -> Result<(), ViewError> {
-        let n = words.chars().count();
-        // numpy has no type of strings without a character
-        let mut array = header(&format!("<U{}", n.max(1)), &[]);
-        let padding = (n == 0).then_some('\0');
-        words
-            .chars()
-            .chain(padding)
-            .for_each(|c| array.extend(u32::from(c).to_le_bytes()));
+        // numpy has no type of strings without a character, and drops zeros at the end
+        let words = if words.is_empty() { "\0" } else { words };
+        let mut array = header(&format!("<U{}", words.chars().count()), &[]);
+        array.extend(words.chars().flat_map(|c| u32::from(c).to_le_bytes()));
         self.put(name, &array)
     }
 
@@ -88,23 +85,20 @@ fn wrong(name: &str, reason: String) -> ViewError {
     }
 }
 
-/// Where values begin: at a multiple of this.
-const ALIGNMENT: usize = 64;
-
 /// What stands before the values of an array: version 1.0 of the format of
-/// [`numpy.lib.format`](https://numpy.org/doc/stable/reference/generated/numpy.lib.format.html).
+/// [`numpy.lib.format`](https://numpy.org/doc/stable/reference/generated/numpy.lib.format.html), in which values begin at a
+/// multiple of 64 bytes.
 ///
-/// A library for these lines would bring a parser of Python's literals, and with it two dozen crates.
+/// A library for these lines would bring a parser of Python's literals, and with it a dozen crates.
 fn header(of: &str, shape: &[usize]) -> Vec<u8> {
-    let lengths: String = shape.iter().map(|n| format!("{n}, ")).collect();
-    let mut text = format!("{{'descr': '{of}', 'fortran_order': False, 'shape': ({lengths})}}");
-    const LEAD: usize = 10;
-    let end = (LEAD + text.len() + 1).next_multiple_of(ALIGNMENT);
-    text.extend(std::iter::repeat_n(' ', end - LEAD - text.len() - 1));
-    text.push('\n');
     let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
-    bytes.extend((text.len() as u16).to_le_bytes());
-    bytes.extend(text.into_bytes());
+    let lengths: String = shape.iter().map(|n| format!("{n}, ")).collect();
+    let text = format!("{{'descr': '{of}', 'fortran_order': False, 'shape': ({lengths})}}");
+    // two bytes for the length of the text, one for the end of its line
+    let before = bytes.len() + 2;
+    let width = (before + text.len() + 1).next_multiple_of(64) - before - 1;
+    bytes.extend((width as u16 + 1).to_le_bytes());
+    bytes.extend(format!("{text:<width$}\n").into_bytes());
     bytes
 }
 
